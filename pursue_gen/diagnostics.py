@@ -108,6 +108,11 @@ def units(amount: object) -> str:
     return getattr(amount, "in_words", "") or counted(amount, "unit")
 
 
+def an(kind: str) -> str:
+    """`an event`, `a rule`: a kind of thing with its article."""
+    return f"{'an' if kind[0] in 'ae' else 'a'} {kind}"
+
+
 def lines_in_words(spans: Iterable[Span]) -> str:
     """`lines 3 and 21 (r is room1; r is room2)`: the lines of these places, each once, with the members that are
     meant."""

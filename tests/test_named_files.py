@@ -21,7 +21,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.drawing.floor import read_image
 from pursue_gen.drawing.floor_picture import read_floor
 from pursue_gen.files import read_text
-from pursue_gen.language.formatter_files import layout_of
+from pursue_gen.language.formatter import layout_of
 from pursue_gen.solving.inputs import load_game
 from pursue_gen.tools.draw.storage import version
 from pursue_gen.tools.replay import read_recording

@@ -47,6 +47,7 @@ FIXED = {
     "explanation/play_lines.py": ["_MOST_OTHERS"],
     "explanation/repairs.py": ["_FINEST"],
     "partition/yaml_text.py": ["_WIDTH"],
+    "tools/authoring/dialog.py": ["_PATIENCE", "LONGEST_LINE"],
     "tools/authoring/requirements.py": ["MOST_PLACES", "MOST_DISTANCE", "BETWEEN"],
     "tools/calibration/advice.py": ["TOLERANCE", "_EXACT"],
     "tools/calibration/picture.py": ["_WIDTH", "_TOP", "_BOLD", "_TICK", "_MOST_LABEL", "_DRAWN", "_LEVELS"],

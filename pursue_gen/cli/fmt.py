@@ -23,7 +23,7 @@ def fmt(
 
     A file with syntax errors is left as it is, and the exit status is 3; where a file cannot be read, it is 2.
     """
-    from pursue_gen.language.formatter_files import Layout, layout_of, layout_of_bytes, replace_text
+    from pursue_gen.language.formatter import Layout, layout_of, layout_of_bytes, replace_text
     from pursue_gen.language.parser import MOST_BYTES
 
     stdin = files == [Path("-")]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import ceil, floor, gcd
-from typing import Dict, Iterator, List, Mapping, Tuple, Union
+from typing import Dict, Iterator, Mapping, Tuple, Union
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
 from pursue_gen.language.numbers import decimal_text, exact
@@ -175,24 +175,16 @@ def _levels(scenario: Scenario, battery: Battery) -> Iterator[Diagnostic]:
     count = len(levels(scenario, battery))
     if count > MOST_LEVELS:
         message = f"the battery of {name} can be at {count} levels, and multiplies the states of the game by as many"
-        hint = f"at most {MOST_LEVELS} are possible; " + _coarser(scenario, battery)
-        yield error("PML315", message, battery.span, hint)
+        uses = {*movements_use(scenario, battery).values(), *actions_use(scenario, battery).values()}
+        shown = ", ".join(shown_level(scenario, battery, use) for use in sorted(uses))
+        coarser = f"a larger unit, or times with a common divisor (movements and actions use, at most: {shown})"
+        yield error("PML315", message, battery.span, f"at most {MOST_LEVELS} are possible; choose {coarser}")
     for way, use in movements_use(scenario, battery).items():
         if use > most:
             enough, used = ceil(Fraction(use, most) * battery.capacity), shown_level(scenario, battery, use)
             message = f"a full battery does not last {name} from {way[0]} to {way[1]}: that uses up to {used}"
             hint = f"{name} never sets off on it; write capacity {enough} or more"
             yield warning("PML316", message, battery.span, hint)
-
-
-def _coarser(scenario: Scenario, battery: Battery) -> str:
-    """What would give the battery fewer levels."""
-    shown = ", ".join(shown_level(scenario, battery, use) for use in sorted(set(_uses(scenario, battery))))
-    return f"choose a larger unit, or times with a common divisor (movements and actions use, at most: {shown})"
-
-
-def _uses(scenario: Scenario, battery: Battery) -> List[int]:
-    return [*movements_use(scenario, battery).values(), *actions_use(scenario, battery).values()]
 
 
 def _actions(scenario: Scenario, battery: Battery) -> Iterator[Tuple[Event, str]]:

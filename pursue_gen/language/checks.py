@@ -11,7 +11,7 @@ from pursue_gen.diagnostics import Diagnostic, Severity, Span, error, in_order, 
 from pursue_gen.language.assumption_checks import check_assumptions
 from pursue_gen.language.batteries import check_batteries
 from pursue_gen.language.behaviour import check_events, check_rules, components
-from pursue_gen.language.condition_checks import check_conditions
+from pursue_gen.language.condition_checks import check_conditions, check_unknown
 from pursue_gen.language.doors import check_doors
 from pursue_gen.language.labels import check_labels
 from pursue_gen.language.lifts import check_lifts, is_said
@@ -24,7 +24,6 @@ from pursue_gen.language.scenario import Agent, Connection, Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
 from pursue_gen.language.times import in_units, written_time
 from pursue_gen.language.tokens import shown
-from pursue_gen.language.unknown_checks import check_unknown
 
 _OF_THE_WHOLE = frozenset(("PML105", "PML130", "PML131", "PML132", "PML171", "PML190"))
 """Codes of findings that need a scenario that was read as a whole."""
@@ -69,10 +68,10 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
         return reading.diagnostics
     findings += check_names(scenario)
     findings += check_references(scenario, reading.lost)
-    findings += check_labels(scenario)
-    findings += _beside(scenario)
-    for part in (_alone, _units, _starts, _too_long, _too_fine, _connections, _travels, _missing, _order):
-        findings += part(scenario)
+    for check_part in (
+        check_labels, _beside, _alone, _units, _starts, _too_long, _too_fine, _connections, _travels, _missing, _order
+    ):  # fmt: skip
+        findings += check_part(scenario)
     codes = {f.code for f in findings}
     if reading.scenario is None:
         return _presentable(in_order(_of_what_was_read(reading, (f for f in findings if f.code not in _OF_THE_WHOLE))))
@@ -85,11 +84,8 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
             if not {f.code for f in of_loads} & {"PML340", "PML342", "PML345"}:  # conditions stand on loads
                 findings += check_conditions(scenario)
                 findings += check_assumptions(scenario)
-            findings += check_poses(scenario)
-            findings += check_doors(scenario)
-            findings += check_lifts(scenario)
-            findings += check_unknown(scenario)
-            findings += check_batteries(scenario)
+            for check_part in (check_poses, check_doors, check_lifts, check_unknown, check_batteries):
+                findings += check_part(scenario)
             findings += of_loads
         if not any(f.severity is Severity.ERROR for f in findings):
             findings += _islands(scenario)

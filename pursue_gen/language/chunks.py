@@ -26,8 +26,12 @@ _ENDS = frozenset(
     ).split()
 )
 """Tokens behind which no name can stand: one that opens the next line begins something else."""
-_LENGTHS = ("SECOND", "MINUTE", "HOUR", "NUMBER")
-"""What a unit of time may be."""
+_NAMED = ("NAME", "UNCLOSED_NAME", "COLON")
+_FOLLOWED_BY = {
+    "UNIT": ("SECOND", "MINUTE", "HOUR", "NUMBER"), "REST": ("NUMBER",), "MISSION": ("ENDS",),
+    **dict.fromkeys(("GROUP", "THING", "DOOR", "LIFT"), _NAMED),
+}  # fmt: skip
+"""Words that begin a statement and may be names, and what follows them where they are none."""
 _PLACED = ("POI", "DOOR", "LIFT")
 """The tokens that begin what may have a pose."""
 _OF_POIS = NAMES | set("NAME LABEL FOR EXCEPT COMMA OPENS WITHIN NUMBER AT COMES TAKES TO".split())
@@ -71,7 +75,7 @@ def chunks_of(tokens: List[Token]) -> List[List[Token]]:
     for index, token in enumerate(tokens):
         opens_line = index == 0 or tokens[index - 1].line != token.line
         following = tokens[index + 1].type if index + 1 < len(tokens) else ""
-        goes_on = following in ("NAME", "UNCLOSED_NAME", "COLON")
+        goes_on = following in _NAMED
         ended = index == 0 or tokens[index - 1].type in _ENDS
         if found and _awaits(found[-1], token, tokens[index + 1 : index + 3]):
             begins = False
@@ -82,14 +86,8 @@ def chunks_of(tokens: List[Token]) -> List[List[Token]]:
             begins = False  # a rule is for each robot, or agent
         elif token.type == "OPTIONAL":  # a name may be called so; none is before a number
             begins = following == "NUMBER" or (opens_line and (ended or following in ("OBJECTIVE", "REACH_OBJECTIVE")))
-        elif token.type == "UNIT":  # so may it, and it stands behind `per`
-            begins = following in _LENGTHS or (opens_line and ended)
-        elif token.type == "REST":  # so may it; none is before a number
-            begins = following == "NUMBER" or (opens_line and ended)
-        elif token.type == "MISSION":  # a name may be called so
-            begins = following == "ENDS" or (opens_line and ended)
-        elif token.type in ("GROUP", "THING", "DOOR", "LIFT"):  # a name may be called so
-            begins = goes_on or (opens_line and ended)
+        elif token.type in _FOLLOWED_BY:
+            begins = following in _FOLLOWED_BY[token.type] or (opens_line and ended)
         elif token.type in ("OBJECTIVE", "REACH_OBJECTIVE") and _opened(found):
             begins = False
         elif token.type in (*STATEMENTS, TAIL):  # inside a line such a word may also stand where a name should

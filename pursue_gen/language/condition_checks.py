@@ -1,15 +1,15 @@
-"""What is wrong with conditions: what an agent never is or does, and what says nothing or too much."""
+"""What is wrong with conditions: what an agent never is or does, what says nothing or too much, and what nobody need
+find out."""
 
 from __future__ import annotations
 
 from math import comb
-from typing import Collection, Iterator, Optional
+from typing import AbstractSet, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
 from pursue_gen.language.clauses import MOST_CLAUSES, Domains, TooMany, clauses_of, holds_at_start
 from pursue_gen.language.conditions import (
     At,
-    AtMostOf,
     Atom,
     Condition,
     Doing,
@@ -19,12 +19,13 @@ from pursue_gen.language.conditions import (
     atoms,
     condition_text,
     condition_words,
+    names_in,
     predicate_words,
 )
 from pursue_gen.language.lifts import is_said
 from pursue_gen.language.objectives.holds import Holds as Room
 from pursue_gen.language.objectives.holds import rooms_in
-from pursue_gen.language.scenario import Safety, Scenario
+from pursue_gen.language.scenario import Ref, Safety, Scenario, State, StatedObjective
 
 MOST_ROOM = 1_000
 """The ways in which more can be somewhere than there is room for: as many edges has its automaton. Not measured."""
@@ -82,7 +83,8 @@ def _room(scenario: Scenario, safety: Room, domains: Domains) -> Iterator[Diagno
     rooms = [(room, domains.counted(room)) for room in safety.rooms]
     said = is_said(scenario, safety)
     if said and not safety.in_one:
-        impossible = [each for room, counted in rooms for each in _nobody(scenario, domains, room, counted, safety)]
+        named = (atom for room, counted in rooms for atom in room.parts if isinstance(atom, At) or not counted)
+        impossible = [found for atom in named for found in _impossible(scenario, domains, atom, safety.span)]
         if impossible:
             yield from impossible
             return
@@ -102,15 +104,6 @@ def _room(scenario: Scenario, safety: Room, domains: Domains) -> Iterator[Diagno
             yield from _lost_at_start(scenario, safety.span, Not(room), domains)
 
 
-def _nobody(
-    scenario: Scenario, domains: Domains, room: AtMostOf, counted: Collection[str], safety: Safety
-) -> Iterator[Diagnostic]:
-    """Who is named and never there; of several places together some are not connected."""
-    for atom in room.parts:
-        if isinstance(atom, At) or not counted:
-            yield from _impossible(scenario, domains, atom, safety.span)
-
-
 def _lost_at_start(
     scenario: Scenario, span: Span, broken: Optional[Condition], domains: Domains
 ) -> Iterator[Diagnostic]:
@@ -126,34 +119,29 @@ def _impossible(scenario: Scenario, domains: Domains, atom: Atom, span: Span) ->
     if isinstance(atom, Holds) or domains.literals(atom):
         return
     who, kind = atom.who.agent, "robot" if atom.who.robots else "agent"
-    nobody = f"no {kind}" if who is None else who.name
+    is_never = f"no {kind} is ever" if who is None else f"{who.name} is never"
     if isinstance(atom, At):
-        message = f"{nobody} {'is ever' if who is None else 'is never'} at {atom.place.name}"
         hint = "connect the place with where it starts, make it mobile, or name another place"
-        yield error("PML230", message, atom.place.span, hint)
+        yield error("PML230", f"{is_never} at {atom.place.name}", atom.place.span, hint)
     elif isinstance(atom, Has):
-        message = f"{nobody} {'ever has' if who is None else 'never has'} {atom.thing.name}"
+        message = f"no {kind} ever has {atom.thing.name}" if who is None else f"{who.name} never has {atom.thing.name}"
         hint = "let it do an event that takes or mounts it, or name another thing"
         yield error("PML231", message, atom.thing.span, hint)
     elif isinstance(atom, Doing):
         event = next(event for event in scenario.events if event.name == atom.event.name)
-        name = event.name
+        message, hint = f"{is_never} doing {event.name}", f"give it to the agent: can_do {event.name}"
+        hint += f", or reacts_to {event.name}" if event.is_shared else ""
         if event.duration is None:
-            message = f"{name} takes no time: no agent is ever doing it"
-            hint = f"give it a duration, or let {name} make a state true and name the state"
-        else:
-            message = f"{nobody} {'is ever' if who is None else 'is never'} doing {name}"
-            hint = f"give it to the agent: can_do {name}" + (f", or reacts_to {name}" if event.is_shared else "")
+            message = f"{event.name} takes no time: no agent is ever doing it"
+            hint = f"give it a duration, or let {event.name} make a state true and name the state"
         yield error("PML231", message, atom.event.span, hint)
     elif atom.ends:
-        a, b = (ref.name for ref in atom.ends)
-        message = f"{nobody} {'is ever' if who is None else 'is never'} {predicate_words(atom)}"
-        hint = f"connect {a} with {b}, make it mobile, or name another way"
-        yield error("PML230", message, atom.ends[0].span, hint)
+        hint = "connect {} with {}, make it mobile, or name another way".format(*(ref.name for ref in atom.ends))
+        yield error("PML230", f"{is_never} {predicate_words(atom)}", atom.ends[0].span, hint)
     else:
+        hint = "make it mobile (mobile 1), or delete this part of the condition"
         place = span if who is None else who.span
-        message = f"{nobody} {'is ever' if who is None else 'is never'} on its way: nothing there is mobile"
-        yield error("PML230", message, place, "make it mobile (mobile 1), or delete this part of the condition")
+        yield error("PML230", f"{is_never} on its way: nothing there is mobile", place, hint)
 
 
 def _without_sense(condition: Condition, span: Span, domains: Domains) -> Iterator[Diagnostic]:
@@ -168,3 +156,47 @@ def _without_sense(condition: Condition, span: Span, domains: Domains) -> Iterat
     if always or never:
         message = f"this condition {'always' if always else 'never'} holds: {condition_text(condition)}"
         yield warning("PML232", message, span, "delete it, or correct what it says")
+
+
+def check_unknown(scenario: Scenario) -> Iterator[Diagnostic]:
+    """A warning where what has to be answered is found out by robots alone, and nothing has them do that: they keep
+    such an objective if they never look."""
+    unknown = {state.name: state for state in scenario.states if state.is_found_out}
+    for each in scenario.safety if unknown else ():
+        begins = each.breaks.begins
+        if begins is None or isinstance(begins, Ref):
+            continue
+        asked = dict.fromkeys(atom.state.name for atom in atoms(begins) if isinstance(atom, Holds))
+        others = {name for other in scenario.objectives if other is not each for name in _named(other)}
+        places = (event.location for event in scenario.events if event.name in others)
+        others |= {place.name for place in places if place is not None}
+        for state in (unknown[name] for name in asked if name in unknown):
+            if not _is_found_out(state, scenario, others):
+                how, wanted = _how(state)
+                message = f"nothing has the robots find out whether {state.name} is true: they need not {how}"
+                yield warning("PML434", message, each.span, f"ask for that, too, as in objective: {wanted}")
+
+
+def _how(state: State) -> Tuple[str, str]:
+    """How robots find it out, and an objective that has them do that."""
+    if state.seen_at is not None:
+        return f"be at {state.seen_at.name}", f"patrol {state.seen_at.name} every 600 by any robot"
+    shows = ", ".join(ref.name for ref in state.shown_by[:1])
+    return f"do {shows}", f"if call then {shows} within 60"
+
+
+def _is_found_out(state: State, scenario: Scenario, wanted: AbstractSet[str]) -> bool:
+    """True where others than robots show what the state is, or set it, or where something of this is wanted that leads
+    to it."""
+    shows = {ref.name for ref in state.shown_by}
+    events = shows.union(ref.name for ref in (*state.true_if, *state.false_if))
+    others = {ref.name for agent in scenario.agents if not agent.controllable for ref in agent.can_do}
+    place = "" if state.seen_at is None else state.seen_at.name
+    starts = any(agent.is_robot and agent.location.name == place for agent in scenario.agents)
+    return bool(events & others or shows & wanted) or starts or place in wanted
+
+
+def _named(objective: StatedObjective) -> Iterator[str]:
+    """The events, places and all else that an objective names."""
+    yield from (ref.name for _, ref in objective.names())
+    yield from (ref.name for one in objective.conditions for _, ref in names_in(one))

@@ -122,6 +122,9 @@ class Has:
 
 Atom = Union[At, OnWay, Doing, Holds, Has]
 
+_SAID = {At: ("at", "POI", "place"), Doing: ("doing", "event", "event"), Has: ("has", "thing", "thing")}
+"""What is said of somebody: the verb, the kind of its object, and the field that has it."""
+
 
 @dataclass(frozen=True)
 class AtMostOf:
@@ -154,14 +157,11 @@ def names_in(condition: Condition) -> Iterator[Tuple[str, Ref]]:
             continue
         if atom.who.agent is not None:
             yield "agent", atom.who.agent
-        if isinstance(atom, At):
-            yield "POI", atom.place
-        elif isinstance(atom, Doing):
-            yield "event", atom.event
-        elif isinstance(atom, Has):
-            yield "thing", atom.thing
-        else:
+        if isinstance(atom, OnWay):
             yield from (("POI", ref) for ref in atom.ends)
+        else:
+            _, kind, field = _SAID[type(atom)]
+            yield kind, getattr(atom, field)
 
 
 def held_by(condition: Condition, robot: Ref) -> Condition:
@@ -205,19 +205,20 @@ def condition_text(condition: Condition) -> str:
     return f"{subject} {predicate_text(condition)}"
 
 
+def _predicate(atom: Atom, on_way: str, name: Callable[[Ref], str]) -> str:
+    """What is said of an agent. `on_way`: that it is between two places; `name`: what stands for a name."""
+    if isinstance(atom, OnWay):
+        form = "between {} and {}" if atom.either_way else f"{on_way} from {{}} to {{}}" if atom.ends else on_way
+        return form.format(*map(name, atom.ends))
+    verb, _, field = _SAID[type(atom)]
+    return f"{verb} {name(getattr(atom, field))}"
+
+
 def predicate_text(atom: Atom) -> str:
     """What is said of an agent, or of a state, as it is written: `at shelf`."""
     if isinstance(atom, Holds):
         return f"is_{str(atom.value).lower()}"
-    if isinstance(atom, At):
-        return f"at {atom.place.name}"
-    if isinstance(atom, Doing):
-        return f"doing {atom.event.name}"
-    if isinstance(atom, Has):
-        return f"has {atom.thing.name}"
-    return ("between {} and {}" if atom.either_way else "on_way from {} to {}" if atom.ends else "on_way").format(
-        *(ref.name for ref in atom.ends)
-    )
+    return _predicate(atom, "on_way", lambda ref: ref.name)
 
 
 def condition_words(condition: Condition, holds: bool = True) -> str:
@@ -246,16 +247,7 @@ def predicate_words(atom: Atom, its: str = "its") -> str:
     """What is said of an agent, or of a state, in English, as in "at the shelf"."""
     if isinstance(atom, Holds):
         return str(atom.value).lower()
-    if isinstance(atom, At):
-        return f"at {atom.place.shown}"
-    if isinstance(atom, Doing):
-        return f"doing {atom.event.shown}"
-    if isinstance(atom, Has):
-        return f"has {atom.thing.shown}"
-    on_way = f"on {its} way"
-    return ("between {} and {}" if atom.either_way else f"{on_way} from {{}} to {{}}" if atom.ends else on_way).format(
-        *(ref.shown for ref in atom.ends)
-    )
+    return _predicate(atom, f"on {its} way", lambda ref: ref.shown)
 
 
 def some_text(most: int, everybody: Collection[Union[Who, Ref]], shown: bool = False) -> str:

@@ -15,14 +15,7 @@ from pursue_gen.diagnostics import Span
 from pursue_gen.language.chunks import COMMENTS
 from pursue_gen.language.kinds import STATEMENTS
 from pursue_gen.language.lines import Lines
-from pursue_gen.language.syntax import (
-    Statement,
-    Syntax,
-    statements_of,
-    syntax_of,
-    tokens_of,
-    too_large,
-)
+from pursue_gen.language.syntax import Statement, Syntax, statements_of, syntax_of, tokens_of, too_large
 from pursue_gen.language.tokens import end_of, start_of
 
 Block = Tuple[Token, ...]
@@ -151,22 +144,12 @@ class Document:
 
     def statement_at(self, offset: int) -> Optional[Statement]:
         """The statement that an offset is in, or right behind of."""
-        latest = None
-        for part in self.statements:
-            if part.start > offset:
-                break
-            latest = part
+        latest = next((part for part in reversed(self.statements) if part.start <= offset), None)
         return latest if latest is not None and offset <= latest.end else None
 
     def token_at(self, offset: int) -> Optional[Token]:
         """The word, sign or comment that an offset is in, or right behind of; the one that begins there first."""
-        found = None
-        for token in self.tokens:
-            if start_of(token) > offset:
-                break
-            if offset <= end_of(token):
-                found = token
-        return found
+        return next((token for token in reversed(self.tokens) if start_of(token) <= offset <= end_of(token)), None)
 
     def in_comment(self, offset: int) -> bool:
         """Would a letter that is typed here belong to a comment?"""

@@ -10,7 +10,7 @@ from typing import Container, Dict, Iterable, Iterator, List, Mapping, NamedTupl
 
 from lark import Token
 
-from pursue_gen.diagnostics import Diagnostic, Span, error
+from pursue_gen.diagnostics import Diagnostic, Span, an, error
 from pursue_gen.language.for_each import NAMES, Range, body_of, ranges_of, with_groups
 from pursue_gen.language.kinds import DECLARED, MAY_BE_NAMES, STATEMENTS
 from pursue_gen.language.members import ROBOTS, Refused, Tokens, Words, between
@@ -53,7 +53,7 @@ def check_groups(expansion: Expansion, lost: Container[str], file: str) -> Itera
                 yield error("PML110", f"nothing is called {member}", span_of(member, file), hint)
         for member, kind in known:
             if kind != known[0][1]:
-                message = f"{member} is {_a(kind)}, and {known[0][0]} is {_a(known[0][1])}"
+                message = f"{member} is {an(kind)}, and {known[0][0]} is {an(known[0][1])}"
                 hint = "the members of a group are of one kind: make two groups of them"
                 yield error("PML402", message, span_of(member, file), hint)
 
@@ -119,7 +119,7 @@ class _Groups:
             raise Refused(error("PML102", message, self._at(tokens[1]), hint))
         if name in self._declared:
             kind, first = self._declared[name]
-            message = f"{name} is {_a(kind)} in line {first.line} and a group here: a name stands for one thing"
+            message = f"{name} is {an(kind)} in line {first.line} and a group here: a name stands for one thing"
             raise Refused(error("PML104", message, self._at(tokens[1]), "choose another name for one of them"))
         if name in self._lines:
             message = f"{name} is declared twice; line {self._lines[name]} declares it already"
@@ -169,7 +169,7 @@ class _Groups:
             kind, first = self._declared.get(str(variable), ("", variable))
             line = first.line if kind else self._lines.get(str(variable))
             if line is not None:
-                message = f"{variable} is {_a(kind or 'group')} already, of line {line}"
+                message = f"{variable} is {an(kind or 'group')} already, of line {line}"
                 raise Refused(error("PML404", message, self._at(variable), "choose another name for the variable"))
             if variable in variables[:number]:
                 hint = "choose another name for one of them"
@@ -190,7 +190,7 @@ class _Groups:
             raise Refused(error("PML414", "what declares agents cannot be for each robot", self._at(group), hint))
         close = closest(name, tuple(self._lines))
         hint = f"did you mean {close}?" if close else f'declare it: group "{group}": …'
-        message = f"{group} is {_a(kind)}, of line {first.line}, and no group" if kind else f"there is no group {group}"
+        message = f"{group} is {an(kind)}, of line {first.line}, and no group" if kind else f"there is no group {group}"
         raise Refused(error("PML400", message, self._at(group), hint))
 
     def _at(self, token: Token) -> Span:
@@ -216,7 +216,3 @@ def _declared(statements: Iterable[Tokens]) -> Dict[str, Tuple[str, Token]]:
 def _is_robot(tokens: Tokens) -> bool:
     kinds = [token.type for token in tokens]
     return kinds[:2] == ["AGENT", "NAME"] and "CONTROLLABLE" in kinds and "HUMAN" not in kinds
-
-
-def _a(kind: str) -> str:
-    return f"{'an' if kind[0] in 'ae' else 'a'} {kind}"

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import hypot
-from typing import Dict, Iterator, List, Tuple
+from typing import Dict, Iterator, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, error, listed, warning
 from pursue_gen.language.conditions import Who
 from pursue_gen.language.numbers import Window
 from pursue_gen.language.objectives.holds import LiftHolds, lifts_in
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.scenario import Agent, Connection, Lift, Safety, Scenario, StatedObjective
+from pursue_gen.language.scenario import Agent, Connection, Lift, Scenario, StatedObjective
 
 Way = Tuple[str, str]
 """From and to."""
@@ -36,35 +36,27 @@ def driven(scenario: Scenario, agent: Agent) -> Dict[Way, Window]:
     return {way: window for way, window in scenario.movements(agent).items() if way not in rides}
 
 
-def with_room_in_lifts(scenario: Scenario) -> Scenario:
-    """The scenario in which each lift holds one robot, unless an objective says what it holds, each of these with the
-    ways by the lift: how long a lift takes would not be true otherwise."""
+def in_building(scenario: Scenario) -> Scenario:
+    """The scenario in which each lift holds one robot, unless an objective says what it holds: how long a lift takes
+    would not be true otherwise. Each objective has the places and ways of which it speaks without their names."""
     said = {each.lift.name for _, each in lifts_in(scenario.safety)}
-    more = [lift for lift in scenario.lifts if lift.name not in said and _is_shared(scenario, lift)]
-    if not said and not more:
-        return scenario
+    more = (lift for lift in scenario.lifts if lift.name not in said and _is_shared(scenario, lift))
     ones = (LiftHolds(Ref(lift.name, lift.span, lift.label or ""), 1, (Who(None, True),), lift.span) for lift in more)
-    safety: List[Safety] = [*scenario.safety, *ones]
-    for number, each in lifts_in(safety):
-        safety[number] = _with_ways(scenario, each)
-    return replace(scenario, safety=tuple(sorted(safety, key=lambda each: each.last)))
+    safety = sorted((*scenario.safety, *ones), key=lambda each: each.last)
+    places = {poi.name: Ref(poi.name, poi.span, poi.label or "") for poi in scenario.pois}
+    known = (way for way in scenario.connections if places.keys() >= {way.a, way.b})
+    ways = [(places[way.a], places[way.b], "" if way.by is None else way.by.name) for way in known]
+    return replace(scenario, safety=tuple(each.in_building(tuple(places.values()), ways) for each in safety))
 
 
 def is_said(scenario: Scenario, objective: StatedObjective) -> bool:
-    """False for what `with_room_in_lifts` has added."""
+    """False for what `in_building` has added."""
     return not any(lift.span == each.span for _, each in lifts_in([objective]) for lift in scenario.lifts)
 
 
 def _is_shared(scenario: Scenario, lift: Lift) -> bool:
     """True where several robots may ride in a lift."""
     return sum(lift in rides_of(scenario, agent).values() for agent in scenario.agents) > 1
-
-
-def _with_ways(scenario: Scenario, objective: LiftHolds) -> Safety:
-    places = {poi.name: Ref(poi.name, poi.span, poi.label or "") for poi in scenario.pois}
-    ways = [way for way in scenario.connections if way.by is not None and way.by.name == objective.lift.name]
-    ends = {frozenset((way.a, way.b)): (way.a, way.b) for way in ways if places.keys() >= {way.a, way.b}}
-    return replace(objective, building=tuple((places[a], places[b]) for a, b in ends.values()))
 
 
 def check_lifts(scenario: Scenario) -> Iterator[Diagnostic]:

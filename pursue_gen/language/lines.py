@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
@@ -27,12 +28,7 @@ class Lines:
     @cached_property
     def starts(self) -> Tuple[int, ...]:
         """The offset where each line begins; an empty text has one line."""
-        starts = [0]
-        at = self.text.find("\n")
-        while at >= 0:
-            starts.append(at + 1)
-            at = self.text.find("\n", at + 1)
-        return tuple(starts)
+        return (0, *(found.end() for found in re.finditer("\n", self.text)))
 
     def start(self, line: int) -> int:
         """The offset where a line begins."""

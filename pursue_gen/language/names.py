@@ -1,22 +1,29 @@
-"""Names: each is declared once, for one kind of thing, and can stand in a ROS package, a topic, Python and UPPAAL."""
+"""Names: each is declared once, for one kind of thing, and can stand in a ROS package, a topic, Python and UPPAAL; and
+of two that are fine alone, the generator must not make one text for two things."""
 
 from __future__ import annotations
 
-from typing import Container, Dict, FrozenSet, Iterator, List, Mapping, Optional, Tuple
+from typing import Container, Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, Span, error
-from pursue_gen.language.collisions import check_collisions
+from pursue_gen.diagnostics import Diagnostic, Span, an, error
+from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import names_in
 from pursue_gen.language.kinds import RESERVED, STATEMENTS
 from pursue_gen.language.labels import LABELLED, why_no_label
+from pursue_gen.language.loads import carriers
+from pursue_gen.language.objectives.endurance import batteries_in
 from pursue_gen.language.scenario import Ref, Scenario
 from pursue_gen.language.similar import Similar, closest
+from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.language.tokens import shown
 from pursue_gen.language.usable import LONGEST, fitting, proposal, reserved, well_formed
 
 _LISTED_IN = {kind.declares: kind.listed_in for kind in STATEMENTS.values() if kind.declares}
 KINDS = tuple(_LISTED_IN)
 """The kinds of things that have names."""
+
+_Stated = Tuple[Span, Sequence[Symbol]]
+"""The span of a statement, and the symbols that come from it."""
 
 _SOME = 12  # known names that a message lists
 _COMPARED = 200  # names in broken statements among which a similar one is looked for
@@ -32,7 +39,11 @@ def declared(scenario: Scenario, kind: str) -> Dict[str, Span]:
 
 def check_names(scenario: Scenario) -> Iterator[Diagnostic]:
     """Findings about declared names: their form, names declared twice, names that collide with generated ones."""
-    yield from _file_name(scenario)
+    if not well_formed(scenario.name):
+        package = shown(scenario.name, 60) + "_bringup"
+        message = f"the file's name gives the package {package}, which is no name for a ROS package"
+        hint = f"rename the file to {fitting(scenario.name)}.pur: letters, digits and _, a letter first"
+        yield error("PML106", message, None, hint)
     seen: Dict[str, Tuple[str, Span]] = {}
     sound = True
     taken = _taken(scenario)
@@ -64,7 +75,7 @@ def check_references(scenario: Scenario, lost: FrozenSet[str] = frozenset()) -> 
             continue
         elsewhere = next((other for other in KINDS if name in known[other]), "")
         if elsewhere:
-            message = f"{name} is {_a(elsewhere)}, but {_a(kind)} is needed here"
+            message = f"{name} is {an(elsewhere)}, but {an(kind)} is needed here"
         else:
             message = f"there is no {kind} {shown(name, 60)}"
         yield error("PML110", message, ref.span, _instead(kind, name, elsewhere, known, similar[kind], lost, taken))
@@ -93,8 +104,8 @@ def _instead(
     some = ", ".join(_usable(known, taken) for known in list(declared)[:_SOME])
     some += ", …" if len(declared) > _SOME else ""
     if elsewhere:
-        another = f'declare {_a(kind)} with another name: {kind.lower()} "…"'
-        return f"write the name of {_a(kind)}: {some}" if some else another
+        another = f'declare {an(kind)} with another name: {kind.lower()} "…"'
+        return f"write the name of {an(kind)}: {some}" if some else another
     better = proposal(name, RESERVED, taken)
     declare = "declare it" if better == name else "declare it with another name"
     return f'{declare}: {kind.lower()} "{better}", or use one of: ' + (some or "(none yet)")
@@ -132,14 +143,6 @@ def _uses(scenario: Scenario) -> Iterator[Tuple[str, Ref]]:
         yield from names_in(condition)
 
 
-def _file_name(scenario: Scenario) -> Iterator[Diagnostic]:
-    if not well_formed(scenario.name):
-        package = shown(scenario.name, 60) + "_bringup"
-        message = f"the file's name gives the package {package}, which is no name for a ROS package"
-        hint = f"rename the file to {fitting(scenario.name)}.pur: letters, digits and _, a letter first"
-        yield error("PML106", message, None, hint)
-
-
 def _unfit(kind: str, name: str, span: Span, taken: Container[str]) -> Optional[Diagnostic]:
     """Why a name cannot be used; None: it can."""
     if not well_formed(name):
@@ -160,9 +163,90 @@ def _unfit(kind: str, name: str, span: Span, taken: Container[str]) -> Optional[
 def _again(name: str, kind: str, span: Span, first_kind: str, first: Span) -> Diagnostic:
     if kind == first_kind:
         return error("PML103", f"{name} is declared twice; {first.in_words} declares it already", span, "delete one")
-    message = f"{name} is {_a(kind)} here and {_a(first_kind)} in {first.in_words}: a name stands for one thing"
+    message = f"{name} is {an(kind)} here and {an(first_kind)} in {first.in_words}: a name stands for one thing"
     return error("PML104", message, span, "choose another name for one of them")
 
 
-def _a(kind: str) -> str:
-    return ("an " if kind[0] in "ea" else "a ") + kind
+
+
+# What is generated ----------------------------------------------------------------------------------------------------
+
+
+def check_collisions(scenario: Scenario) -> Iterator[Diagnostic]:
+    """An error for each space of names in which a text would mean two things; one pair often collides in many texts."""
+    for stated in (_in_network(scenario), _among_locations(scenario), _packages(scenario)):
+        seen: Dict[str, Symbol] = {}
+        clashes = (
+            (seen[symbol], symbol, span)
+            for span, symbols in stated
+            for symbol in symbols
+            if seen.setdefault(symbol, symbol) is not symbol and seen[symbol].meaning != symbol.meaning
+        )
+        for first, second, span in clashes:
+            message = f"{second} would mean both {first.meaning} and {second.meaning}"
+            yield error("PML105", message, span, "rename one of them so that the two words differ")
+            break
+
+
+def _in_network(scenario: Scenario) -> Iterator[_Stated]:
+    """Whatever shares the names of the network's declarations and of the system state."""
+    ways = [way for connection in scenario.connections for way in connection.directions]
+    for agent in (agent for agent in scenario.agents if agent.mobile is not None):
+        yield agent.span, [make(agent.name, *way) for way in ways for make in (names.movement, names.arrival)]
+    yield from _numbered(scenario)
+    yield from ((poi.span, [names.at(poi.name)]) for poi in scenario.pois)
+    for event in scenario.events:
+        yield event.span, [names.event(event.name), names.done(event.name)]
+        yield event.span, [names.ORDER_DESK, names.DESK_OPEN] if event.on_order else []
+        yield event.span, [names.broken_off(event.name)] if event.may_stop else []
+        yield event.span, [names.busy(event.name)] if event.is_shared or event.split else []
+        parts = (names.part_done(event.name), names.parts(event.name), names.parts_done(event.name))
+        yield event.span, parts if event.split else []
+        yield event.span, [names.count(event.name), names.times(event.name)] if event.at_most is not None else []
+    for rule in scenario.rules:
+        yield rule.span, [names.rule(rule.name), names.rule_turn(rule.name), names.rule_clock(rule.name)]
+        yield rule.span, [names.own_turn(rule.name, agent.name) for agent in scenario.bound_by(rule)]
+    for state in scenario.states:
+        automaton = [names.finding(state.name), names.finding_clock(state.name)]
+        automaton += [names.found(state.name, value) for value in (True, False)]
+        yield state.span, automaton if state.is_found_out else [names.state(state.name)]
+        yield state.span, [names.state_value(state.name)]
+    for agent in scenario.agents:
+        yield agent.span, [names.agent(agent.name), names.agent_position(agent.name), names.agent_clock(agent.name)]
+        starts = [names.starts(agent.name, ref.name) for ref in agent.starts] if agent.is_somewhere else []
+        yield agent.span, starts
+        yield agent.span, [names.busy_with(agent.name)] if any(scenario.conditions()) else []
+    yield from ((battery.span, [names.level(battery.agent.name)]) for battery in scenario.batteries)
+    yield from ((carrier.agent.span, [names.load(carrier.agent.name)]) for carrier in carriers(scenario))
+
+
+def _numbered(scenario: Scenario) -> Iterator[_Stated]:
+    """What is made for objectives and assumptions, which have numbers and no names."""
+    charged = dict(batteries_in(scenario.safety))
+    for number, safety in enumerate(scenario.safety):
+        automaton = names.safety_objective(number)
+        turn = [names.safety_turn(number), names.safety_oldest(number)] if safety.order else []
+        charge = [names.charge_clock(number)] if number in charged else []
+        made = [automaton, names.safety_clock(number), names.safety_pause(number), *turn, *charge]
+        yield safety.span, made
+    for number, reach in enumerate(scenario.reach):
+        made = [names.reach_objective(number), names.reach_clock(number), names.unlocking(number)]
+        yield reach.span, [*made, *([] if reach.apart is None else [names.reach_apart(number)])]
+    for number, assumption in enumerate(scenario.assumed, start=1):
+        made = [names.assumption(number), names.assumption_count(number), names.assumption_clock(number)]
+        yield assumption.span, [*made, names.assumed_way(number)]
+
+
+def _among_locations(scenario: Scenario) -> Iterator[_Stated]:
+    """The names of an agent's locations, with which its commands are found."""
+    for way in scenario.connections:
+        yield way.span, [names.going(a, b) for a, b in way.directions]
+    for event in (event for event in scenario.events if event.duration is not None):
+        yield event.span, [names.doing(event.name, poi.name) for poi in scenario.pois]
+
+
+def _packages(scenario: Scenario) -> Iterator[_Stated]:
+    for agent in scenario.agents:
+        yield agent.span, [Role.PACKAGE(agent.name)]
+    for agent in scenario.agents[:1]:
+        yield agent.span, [Role.BRINGUP(scenario.name)]

@@ -13,7 +13,7 @@ from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, error, in_
 from pursue_gen.language import scenario as pml
 from pursue_gen.language.document import Document
 from pursue_gen.language.kinds import BY_RULE
-from pursue_gen.language.lifts import with_room_in_lifts
+from pursue_gen.language.lifts import in_building
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.statements.unit import Unit, seconds_in
 from pursue_gen.language.syntax import MOST_LETTERS, too_large
@@ -102,15 +102,14 @@ def read_document(document: Document, name: Optional[str] = None) -> Reading:
     for tree in syntax.trees:
         for part in _parts(tree, reader):
             parts[part.listed_in].append(part)
-    parts["safety"] = _in_building(parts["safety"], parts["pois"], parts["connections"])
     findings = (*syntax.findings, *reader.findings)
-    value = pml.Scenario(
+    written = pml.Scenario(
         name=Path(file).stem if name is None else name,
         file=file,
         text=document.text,
         **{field: tuple(some) for field, some in parts.items()},
     )
-    value = with_room_in_lifts(value)
+    value = in_building(written)
     broken = any(finding.severity is Severity.ERROR for finding in syntax.findings)
     lost = syntax.lost if broken else frozenset()
     return Reading(None if broken else value, in_order(findings), value, lost, syntax.whole)
@@ -132,16 +131,6 @@ def _parts(tree: Any, reader: TreeReader) -> Tuple[Any, ...]:
     reader.member = getattr(tree.meta, "member", "")
     found = BY_RULE[tree.data].read(reader, *tree.children, span=reader.span(tree))
     return found if isinstance(found, tuple) else (found,)
-
-
-def _in_building(
-    objectives: Iterable[pml.Safety], pois: Iterable[pml.Poi], connections: Iterable[pml.Connection]
-) -> List[pml.Safety]:
-    """What always holds, in its order, each objective with the places and ways that it speaks of without a name."""
-    places = {poi.name: pml.Ref(poi.name, poi.span, poi.label or "") for poi in pois}
-    ways = [(places[way.a], places[way.b]) for way in connections if places.keys() >= {way.a, way.b}]
-    ordered = sorted(objectives, key=lambda each: each.last)
-    return [each.in_building(tuple(places.values()), ways) for each in ordered]
 
 
 def _unit(document: Document) -> Optional[Number]:

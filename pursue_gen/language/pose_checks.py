@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import product
 from typing import Dict, Iterator, List, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, warning
@@ -50,20 +51,16 @@ class _Given:
 
 def _shared(scenario: Scenario) -> Iterator[Diagnostic]:
     """Poses of two places, or of two robots at one place, that are nearly equal."""
-    cells: Dict[Tuple[int, int, int], List[_Given]] = {}
+    cells: Dict[Tuple[int, ...], List[_Given]] = {}
     for one in _given(scenario):
-        cell = [math.floor(number / _SAME) for number in (one.pose.x, one.pose.y, one.pose.z)]
-        around = [(i, j, k) for i in _near(cell[0]) for j in _near(cell[1]) for k in _near(cell[2])]
+        cell = tuple(math.floor(number / _SAME) for number in (one.pose.x, one.pose.y, one.pose.z))
+        around = product(*(range(number - 1, number + 2) for number in cell))
         candidates = (other for key in around for other in cells.get(key, ()))
         first = next((other for other in candidates if _collide(one, other)), None)
         if first is not None:
             hint = "robots there would stand in each other's way: give each place, and each robot there, its own pose"
             yield warning("PML123", f"{one} has the same pose as {first}", one.span, hint)
-        cells.setdefault((cell[0], cell[1], cell[2]), []).append(one)
-
-
-def _near(cell: int) -> Tuple[int, int, int]:
-    return cell - 1, cell, cell + 1
+        cells.setdefault(cell, []).append(one)
 
 
 def _given(scenario: Scenario) -> List[_Given]:

@@ -1,4 +1,5 @@
-"""Sentences on a whole scenario: what is wanted, what was promised, as long as what, how fast agents are."""
+"""Sentences on a whole scenario: what is wanted, what was promised, as long as what, how fast agents are; whether
+several of an event that has to be answered may be answered by one."""
 
 from __future__ import annotations
 
@@ -7,8 +8,7 @@ from typing import Dict, List, Optional
 from pursue_gen.diagnostics import listed
 from pursue_gen.language.lengths import unit_of_distance
 from pursue_gen.language.numbers import Number, Window
-from pursue_gen.language.one_for_all import is_one_for_all
-from pursue_gen.language.scenario import Agent, Scenario, StatedObjective
+from pursue_gen.language.scenario import Agent, Event, Scenario, StatedObjective
 from pursue_gen.language.times import in_units, window_text, words_for
 
 
@@ -79,3 +79,24 @@ def window_words(window: Window, unit: Optional[Number]) -> str:
     """
     low, high = window
     return window_text(in_units(low, unit), None if high == low + 1 else in_units(high, unit))
+
+
+def is_one_for_all(objective: StatedObjective, scenario: Scenario) -> bool:
+    """True for `if e then f within T` where somebody who is not controlled may do e again before T is over, as far as
+    statements alone say: then one f answers several of them. False where that is not sure."""
+    name = objective.called_by
+    if not name or objective.order:
+        return False
+    event = next((each for each in scenario.events if each.name == name), None)
+    if event is None or not _is_free(event, scenario) or objective.known_limit <= scenario.rest:
+        return False
+    doers = [agent for agent in scenario.doers(name) if not agent.controllable]
+    return bool(doers) and all(each.allows(name, objective.known_limit) for each in scenario.assumed)
+
+
+def _is_free(event: Event, scenario: Scenario) -> bool:
+    """True if nothing but who can do it restricts an event that takes no time."""
+    ruled = any(ref.name == event.name for rule in scenario.rules for ref in rule.events)
+    needs = any(need.event.name == event.name for need in scenario.dependencies)
+    alone = event.duration is None and not event.collaborative and event.only_if is None
+    return alone and event.at_most != 1 and not ruled and not needs

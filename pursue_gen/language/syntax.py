@@ -19,14 +19,7 @@ from pursue_gen.language.for_each import NAMES, behind_of, body_of, with_groups,
 from pursue_gen.language.groups import check_groups, written_out
 from pursue_gen.language.kinds import BY_RULE, DECLARED, KEYWORDS, MAY_BE_NAMES, STATEMENTS, TAIL
 from pursue_gen.language.members import no_list
-from pursue_gen.language.messages import (
-    bare_objective,
-    explain,
-    kind_of,
-    of_a_comment,
-    unfinished,
-    unknown_statement,
-)
+from pursue_gen.language.messages import bare_objective, explain, kind_of, of_a_comment, unfinished, unknown_statement
 from pursue_gen.language.tokens import end_of, span_of, start_of
 
 MOST_LETTERS = 1_000_000

@@ -11,7 +11,7 @@ from pursue_gen.diagnostics import NOWHERE, PursueError, Span, error
 from pursue_gen.language import scenario as pml
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.kinds import STATEMENTS
-from pursue_gen.language.lifts import with_room_in_lifts
+from pursue_gen.language.lifts import in_building
 from pursue_gen.language.measures import Measured
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.parser import read
@@ -37,7 +37,7 @@ def scenario_text(scenario: Scenario) -> str:
     Raises Invalid where that is no text of the language, and PursueError (API001) where it would mean something else:
     names hold what only a text can, or parts stand where the language has no place for them.
     """
-    plain: Scenario = _plain(with_room_in_lifts(scenario))
+    plain: Scenario = _plain(in_building(scenario))
     text = format_text("\n".join(_statements(plain)), plain.file or f"{plain.name}.pur")
     if _meaning(read(text, "", plain.name).scenario) != _meaning(plain):
         message = f"{plain.name} cannot be written in PuRSUE-ML: its text would mean something else"

@@ -8,27 +8,12 @@ from typing import Optional
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import UNDER_WAY, Role, Symbol
 from pursue_gen.tga.network import Edge
-from pursue_runtime.vocabulary import (
-    ARRIVES,
-    AT,
-    AT_WORK,
-    BEGINS,
-    BREAKS_OFF,
-    DOES,
-    FINISHES,
-    FINISHES_PART,
-    FOUND,
-    ON_WAY,
-    SETS_OFF,
-    STARTS,
-    UNPLACED,
-    Deed,
-)
+from pursue_runtime import vocabulary as words
 
 _DEEDS = {
-    Role.SETTING_OFF: SETS_OFF, Role.ARRIVAL: ARRIVES, Role.WAY: ARRIVES,
-    Role.EVENT: DOES, Role.WORK: BEGINS, Role.END: FINISHES, Role.BROKEN_OFF: BREAKS_OFF,
-    Role.PART_END: FINISHES_PART, Role.STARTS: STARTS,
+    Role.SETTING_OFF: words.SETS_OFF, Role.ARRIVAL: words.ARRIVES, Role.WAY: words.ARRIVES,
+    Role.EVENT: words.DOES, Role.WORK: words.BEGINS, Role.END: words.FINISHES, Role.BROKEN_OFF: words.BREAKS_OFF,
+    Role.PART_END: words.FINISHES_PART, Role.STARTS: words.STARTS,
 }  # fmt: skip
 """What an agent does, by the role of its channel; of the location that it leaves or enters where that says more."""
 
@@ -37,18 +22,18 @@ def place(scenario: Scenario, location: str) -> str:
     """Where an agent is, behind `is`: `at c`, `on its way from c to b`, `doing catch at b`."""
     symbol = Symbol.of(location)
     if symbol.role is Role.SOMEWHERE:
-        return UNPLACED
+        return words.UNPLACED
     if symbol.role not in UNDER_WAY:
-        return AT.format(scenario.shown(location))
-    return (ON_WAY if symbol.role is Role.WAY else AT_WORK).format(*map(scenario.shown, symbol.parts))
+        return words.AT.format(scenario.shown(location))
+    return (words.ON_WAY if symbol.role is Role.WAY else words.AT_WORK).format(*map(scenario.shown, symbol.parts))
 
 
-def deed(scenario: Scenario, automaton: str, edge: Edge) -> Optional[Deed]:
+def deed(scenario: Scenario, automaton: str, edge: Edge) -> Optional[words.Deed]:
     """What an agent does by that edge; None where it is no agent, or there are no words for it."""
     symbol = Symbol.of(edge.sync.channel if edge.sync else edge.source)
     if symbol.role is Role.FOUND and edge.leaves is Role.FINDING:
-        return FOUND.of(symbol.parts[-1])
+        return words.FOUND.of(symbol.parts[-1])
     role = Role.WORK if symbol.role is Role.EVENT and edge.enters is Role.WORK else symbol.role
     said = _DEEDS.get(role) if any(agent.name == automaton for agent in scenario.agents) else None
-    parts = symbol.parts[-1:] if said in (ARRIVES, STARTS) else symbol.parts[-2:]
+    parts = symbol.parts[-1:] if said in (words.ARRIVES, words.STARTS) else symbol.parts[-2:]
     return None if said is None else said.of(*map(scenario.shown, parts))

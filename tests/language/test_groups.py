@@ -16,9 +16,8 @@ from pursue_gen.language import parse
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.conditions import condition_text
 from pursue_gen.language.document import Document, statement_text
-from pursue_gen.language.draft import Draft
+from pursue_gen.language.draft import Draft, rename
 from pursue_gen.language.formatter import format_text
-from pursue_gen.language.navigation import rename
 from pursue_gen.language.parser import read
 from pursue_gen.language.rewriting import Rewriting
 from pursue_gen.language.scenario import Scenario

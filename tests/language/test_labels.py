@@ -12,10 +12,9 @@ from hypothesis import strategies as st
 
 from pursue_gen.language import parse
 from pursue_gen.language.document import edited
-from pursue_gen.language.draft import Draft
+from pursue_gen.language.draft import Draft, rename
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.labels import LONGEST_LABEL, markdown, why_no_label
-from pursue_gen.language.navigation import rename
 from pursue_gen.language.sentences import objective_words
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.uppaal import write_network

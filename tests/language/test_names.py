@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.language import parse
-from pursue_gen.language.collisions import check_collisions
 from pursue_gen.language.kinds import RESERVED
+from pursue_gen.language.names import check_collisions
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.usable import GENERATED, proposal
 

@@ -7,8 +7,7 @@ from typing import Dict
 import pytest
 
 from pursue_gen.language import parse
-from pursue_gen.language.one_for_all import is_one_for_all
-from pursue_gen.language.sentences import objective_words
+from pursue_gen.language.sentences import is_one_for_all, objective_words
 from pursue_runtime.observer.automata import Automata
 from tests.stories import free_model, scenario
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import islice
 from math import ceil
 from typing import (
     AbstractSet,
@@ -14,7 +15,6 @@ from typing import (
     Iterator,
     Mapping,
     NamedTuple,
-    Optional,
     Sequence,
     Tuple,
 )
@@ -72,6 +72,10 @@ class Assumption(Written):
     """A variable counts for it how often something has happened."""
     sets_off: ClassVar[bool] = False
     """Its agent has to set off in time, so nothing may keep it from that."""
+    says: ClassVar[str] = ""
+    """What is assumed, in words, as `Written.told` has them."""
+    counts_since: ClassVar[str] = ""
+    """The moment since which its clock counts, likewise; "": it has no clock."""
 
     @property
     def text(self) -> str:
@@ -86,7 +90,12 @@ class Assumption(Written):
     @property
     def clause(self) -> str:
         """What is assumed, in words, as in `visitor is never at lab`."""
-        raise NotImplementedError
+        return self.told(self.says)
+
+    @property
+    def since(self) -> str:
+        """The moment since which its clock counts; "": it has no clock."""
+        return self.told(self.counts_since)
 
     def is_about(self, agent: str) -> bool:
         """True if it names the agent, be it in a condition."""
@@ -111,11 +120,6 @@ class Assumption(Written):
     def check_in(self, setting: Setting) -> Iterator[Diagnostic]:
         """What is wrong with it in its scenario; its names are declared."""
         raise NotImplementedError
-
-    @property
-    def since(self) -> str:
-        """The moment since which its clock counts; "": it has no clock."""
-        return ""
 
     @property
     def excluded(self) -> Tuple[str, ...]:
@@ -172,38 +176,35 @@ class AboutOne(Assumption):
                 hint = "write an objective, a rule or a stateDependency, or take controllable away from it"
                 yield error("PML250", message, self.agent.span, hint)
             else:
-                found = self.wrong(agent, setting)
-                yield from () if found is None else (found,)
+                yield from islice(self.wrong(agent, setting), 1)
 
-    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
-        """What is wrong with it, its agent being one that is not controlled."""
+    def wrong(self, agent: Agent, setting: Setting) -> Iterator[Diagnostic]:
+        """What is wrong with it, its agent being one that is not controlled; the first finding is told."""
         raise NotImplementedError
 
-    def never_does(self, agent: Agent, event: Ref) -> Optional[Diagnostic]:
-        """A warning where the agent cannot do the event that it is about; else None."""
-        if any(ref.name == event.name for ref in agent.can_do):
-            return None
-        message = f"{self.clause}: {agent.name} cannot do {event.name} anyway"
-        hint = f"delete the assumption, or give it to {agent.name}: can_do {event.name}"
-        return warning("PML254", message, event.span, hint)
+    def never_does(self, agent: Agent, event: Ref) -> Iterator[Diagnostic]:
+        """A warning where the agent cannot do the event that it is about."""
+        if all(ref.name != event.name for ref in agent.can_do):
+            message = f"{self.clause}: {agent.name} cannot do {event.name} anyway"
+            hint = f"delete the assumption, or give it to {agent.name}: can_do {event.name}"
+            yield warning("PML254", message, event.span, hint)
 
-    def never_comes(self, agent: Agent, place: Ref, setting: Setting) -> Optional[Diagnostic]:
-        """A warning where the agent never comes to the place that it is about; else None."""
+    def never_comes(self, agent: Agent, place: Ref, setting: Setting) -> Iterator[Diagnostic]:
+        """A warning where the agent never comes to the place that it is about."""
         start = agent.starts_text
         if agent.mobile is None and all(ref.name != place.name for ref in agent.starts):
             message = f"{agent.name} is not mobile: it stays in {start} anyway"
+            yield warning("PML254", message, self.span, "delete the assumption")
         elif all(place.name not in setting.onward(ref.name, agent.name) for ref in agent.starts):
             message = f"no way leads {agent.name} from {start} to {place.name} anyway"
-        else:
-            return None
-        return warning("PML254", message, self.span, "delete the assumption")
+            yield warning("PML254", message, self.span, "delete the assumption")
 
 
 class Departure(AboutOne):
     """An assumption about when an agent sets off, counted from when it came to a place or from the start."""
 
-    sets_off: ClassVar[bool] = True
-    in_rests: ClassVar[bool] = True
+    sets_off = True
+    in_rests = True
 
     @property
     def only_at(self) -> str:
@@ -215,19 +216,18 @@ class Departure(AboutOne):
         """After how many time units it sets off at the earliest, and at the latest."""
         raise NotImplementedError
 
-    def never_away(self, agent: Agent, places: Iterable[str], setting: Setting) -> Optional[Diagnostic]:
-        """An error where the agent cannot leave one of these places, to which it may come; else None."""
+    def never_away(self, agent: Agent, places: Iterable[str], setting: Setting) -> Iterator[Diagnostic]:
+        """Errors where the agent cannot leave one of these places, to which it may come."""
         if agent.mobile is None:
             message = f"{agent.name} is not mobile: it stays in {agent.starts_text}, and cannot leave it"
-            return error("PML252", message, self.span, "make it mobile (mobile 1)")
+            yield error("PML252", message, self.span, "make it mobile (mobile 1)")
         for place in places:
             ways = setting.next_to(place, agent.name)
             if not ways:
-                return error("PML252", f"no way leads away from {place}", self.span, f"connect {place} and …")
-            if ways <= never_at(agent, setting):
+                yield error("PML252", f"no way leads away from {place}", self.span, f"connect {place} and …")
+            elif ways <= never_at(agent, setting):
                 message = f"{agent.name} leaves {place} in time, and is assumed never to be where ways lead from there"
-                return error("PML264", message, self.span, "assume one of the two")
-        return None
+                yield error("PML264", message, self.span, "assume one of the two")
 
 
 def never_at(agent: Agent, setting: Setting) -> AbstractSet[str]:
@@ -269,9 +269,9 @@ class Between(AboutOne):
 
     least: Number
     most: Number
-    number: ClassVar[str] = "most"
-    nearest: ClassVar[int] = SHORTEST_STAY
-    in_rests: ClassVar[bool] = True
+    number = "most"
+    nearest = SHORTEST_STAY
+    in_rests = True
 
     @property
     def subject(self) -> str:
@@ -283,16 +283,15 @@ class Between(AboutOne):
         least = units(self.least) if isinstance(self.least, Time) else self.least
         return f"{least} to {units(self.most)}"
 
-    def ill_timed(self, word: str, why: str, setting: Setting) -> Optional[Diagnostic]:
-        """An error where no time is left between the two numbers behind the word, or the second one is too short."""
+    def ill_timed(self, word: str, why: str, setting: Setting) -> Iterator[Diagnostic]:
+        """Errors where no time is left between the two numbers behind the word, or the second one is too short."""
         if self.most < setting.shortest_stay:
             message = f"to {written_time(self.most)} is too short: {why}"
             enough = written_time(like(setting.shortest_stay, self.most))
-            return error("PML251", message, self.span, f"write to {enough} or more")
+            yield error("PML251", message, self.span, f"write to {enough} or more")
         if self.most < self.least:
             message = f"{word} {window_text(self.least, self.most)}: the second number is smaller than the first one"
-            return error("PML200", message, self.span, f"write {word} {window_text(self.most, self.least)}")
-        return None
+            yield error("PML200", message, self.span, f"write {word} {window_text(self.most, self.least)}")
 
     def stronger(self, longest: Number, shortest_stay: Number) -> Sequence[int]:
         return whole_below(self.most, max(1, ceil(shortest_stay), ceil(self.least)))
@@ -303,14 +302,14 @@ class NotSooner(AboutOne):
 
     event: Ref
     time: Number
-    number: ClassVar[str] = "time"
-    nearest: ClassVar[int] = 1
+    number = "time"
+    nearest = 1
 
-    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+    def wrong(self, agent: Agent, setting: Setting) -> Iterator[Diagnostic]:
         if self.time <= 0:
             message = f"{''.join(self.numbers)} 0 assumes nothing: expected more than 0"
-            return error("PML251", message, self.span, "write the time, or delete the assumption")
-        return self.never_does(agent, self.event)
+            yield error("PML251", message, self.span, "write the time, or delete the assumption")
+        yield from self.never_does(agent, self.event)
 
     def stronger(self, longest: Number, shortest_stay: Number) -> Sequence[int]:
         return whole_above(self.time, longest)

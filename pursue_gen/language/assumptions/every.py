@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Optional, Tuple
+from typing import Iterator
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import Assumption, Between, Setting
@@ -13,7 +13,7 @@ from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.statements.event import Event
 from pursue_gen.language.template import Template
 from pursue_gen.language.times import like, time_units
-from pursue_gen.language.word import Form, Numbers
+from pursue_gen.language.word import Form
 
 
 @dataclass(frozen=True)
@@ -29,44 +29,37 @@ class Every(Between):
     least: Number
     most: Number
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("{agent=belt} does {event=bring} every {least:time=20} to {most:time=30}")
-    forms: ClassVar[Tuple[Form, ...]] = (Form("how often something happens", template.to_fill_in),)
-    numbers: ClassVar[Numbers] = {
+    template = Template("{agent=belt} does {event=bring} every {least:time=20} to {most:time=30}")
+    forms = (Form("how often something happens", template.to_fill_in),)
+    numbers = {
         "every": "It happens {} after the start, or after the last time, or later.".format,
         "to": "It has happened {} after the start, or after the last time.".format,
     }
-
-    @property
-    def clause(self) -> str:
-        return f"{self.agent.shown} does {self.event.shown} every {self.least_to_most}"
-
-    @property
-    def since(self) -> str:
-        return f"{self.agent.shown}'s last {self.event.shown}"
+    says = "{agent} does {event} every {least_to_most}"
+    counts_since = "{agent}'s last {event}"
 
     def allows(self, event: str, within: Number) -> bool:
         return self.event.name != event or self.least < within
 
-    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+    def wrong(self, agent: Agent, setting: Setting) -> Iterator[Diagnostic]:
         rest = time_units(like(setting.rest, self.most))
-        found = self.ill_timed("every", f"agents rest for {rest} between two steps", setting)
-        if found is not None:
-            return found
+        yield from self.ill_timed("every", f"agents rest for {rest} between two steps", setting)
         event = next(each for each in setting.events if each.name == self.event.name)
         why = self._hindered(agent, event, setting)
         if why:
             message = f"{agent.name} may be kept from {event.name}, and is assumed to do it in time: {why}"
-            return error("PML442", message, self.span, "assume waits, or leave out what keeps it from that")
-        return None
+            yield error("PML442", message, self.span, "assume waits, or leave out what keeps it from that")
 
     def _hindered(self, agent: Agent, event: Event, setting: Setting) -> str:
         """Why the agent may be unable to do the event in time; "": it never is."""
+        only = event.location
+        is_there = only is None or (agent.mobile is None and all(ref.name == only.name for ref in agent.starts))
         reasons = (
             (all(ref.name != event.name for ref in agent.can_do), f"it cannot do {event.name}"),
             (bool(agent.reacts_to), "it takes part in what others do"),
             (event.duration is not None, f"{event.name} has a duration"),
             (event.collaborative, f"{event.name} takes two"),
-            (not self._is_where(agent, event), f"it is not always where {event.name} happens"),
+            (not is_there, f"it is not always where {event.name} happens"),
             (bool(event.only_if or event.at_most), f"{event.name} is not always allowed"),
             (event.name in setting.ruled, f"{event.name} is not always allowed"),
             (any((event.takes, event.gives, event.mounts, event.needs)), f"{event.name} is about a thing"),
@@ -75,12 +68,6 @@ class Every(Between):
         found = [reason for holds, reason in reasons if holds]
         found += [f"{other.span.in_words} assumes something of that, too" for other in others]
         return found[0] if found else ""
-
-    @staticmethod
-    def _is_where(agent: Agent, event: Event) -> bool:
-        """True if the agent is always at a place at which it can do the event."""
-        only = event.location
-        return only is None or (agent.mobile is None and all(ref.name == only.name for ref in agent.starts))
 
     def _is_touched_by(self, other: Assumption, setting: Setting) -> bool:
         """True if the other one is about the same agent or event, or about a state that the event sets."""

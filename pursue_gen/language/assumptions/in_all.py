@@ -3,32 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Iterator, Mapping, Sequence, Tuple
+from typing import Iterator, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed
-from pursue_gen.language.assumptions.at_most import MOST_TIMES, AtMost
-from pursue_gen.language.assumptions.base import Assumption, Setting
-from pursue_gen.language.numbers import Number
+from pursue_gen.language.assumptions.at_most import Counted
+from pursue_gen.language.assumptions.base import Setting
 from pursue_gen.language.refs import Ref, twice
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
-from pursue_gen.language.word import Form, Numbers
+from pursue_gen.language.word import Form
 
 
 @dataclass(frozen=True)
-class InAll(Assumption):
+class InAll(Counted):
     """`assume: at_most times of events in all`: agents that are not controlled begin these events no more often, all of
     them counted together."""
 
     times: int
     events: Tuple[Ref, ...]
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("at_most {times:count=5} of {events:events=call1, call2} in all")
-    forms: ClassVar[Tuple[Form, ...]] = (Form("how often several events happen in all", template.to_fill_in),)
-    numbers: ClassVar[Numbers] = AtMost.numbers
-    number: ClassVar[str] = "times"
-    nearest: ClassVar[int] = MOST_TIMES
-    counts: ClassVar[bool] = True
+    template = Template("at_most {times:count=5} of {events:events=call1, call2} in all")
+    forms = (Form("how often several events happen in all", template.to_fill_in),)
+    counts_what = "{_shown} by others"
 
     @property
     def clause(self) -> str:
@@ -39,17 +35,12 @@ class InAll(Assumption):
     def _shown(self) -> str:
         return listed([ref.shown for ref in self.events])
 
-    def allows(self, event: str, within: Number) -> bool:
-        return self.times > 1 or super().allows(event, within)
-
     def binds(self, agent: Agent) -> bool:
         done = {ref.name for ref in self.events}
         return not agent.controllable and any(ref.name in done for ref in agent.can_do)
 
     def check_in(self, setting: Setting) -> Iterator[Diagnostic]:
-        if self.times > MOST_TIMES:
-            message = f"at_most {self.times}: expected {MOST_TIMES} or less, as each time is counted"
-            yield error("PML251", message, self.span, "write a smaller number")
+        yield from self.too_often()
         for ref in twice(self.events):
             yield error("PML253", f"{ref.name} stands twice behind of", ref.span, "delete one of the two")
         for ref in dict.fromkeys(self.events):
@@ -57,11 +48,3 @@ class InAll(Assumption):
             if doers and all(agent.controllable for agent in doers):
                 message = f"all who can do {ref.name} are controlled: what they do is decided, not assumed"
                 yield error("PML250", message, ref.span, f'delete it here, or write event "{ref.name}" at_most … times')
-
-    @property
-    def counted(self) -> Tuple[str, Mapping[str, str]]:
-        done = {str(times): f"{times} of {self.times} times" for times in range(self.times + 1)}
-        return (f"{self._shown} by others", done) if self.times else ("", {})
-
-    def stronger(self, longest: Number, shortest_stay: Number) -> Sequence[int]:
-        return range(self.times - 1, 0, -1)

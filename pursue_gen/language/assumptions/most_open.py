@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Iterator
+from typing import Iterator
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import Assumption, Setting
@@ -23,7 +23,7 @@ class MostOpen(Assumption):
     answer: Ref
     most: int
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("at_most {most:count=3} open")
+    template = Template("at_most {most:count=3} open")
 
     @classmethod
     def of(cls, request: Request) -> MostOpen:

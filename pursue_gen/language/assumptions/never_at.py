@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Iterator, Optional, Sequence, Tuple
+from typing import Iterator, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import AboutOne, Assumption, Setting
@@ -22,22 +22,19 @@ class NeverAt(AboutOne):
     agent: Ref
     place: Ref
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("{agent=visitor} never at {place:POI=store}")
-    own_words: ClassVar[Tuple[Word, ...]] = (Word("never", "It never sets off to that place.", True),)
-    forms: ClassVar[Tuple[Form, ...]] = (Form("where somebody never goes", template.to_fill_in),)
+    template = Template("{agent=visitor} never at {place:POI=store}")
+    own_words = (Word("never", "It never sets off to that place.", True),)
+    forms = (Form("where somebody never goes", template.to_fill_in),)
+    says = "{agent} is never at {place}"
 
-    @property
-    def clause(self) -> str:
-        return f"{self.agent.shown} is never at {self.place.shown}"
-
-    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+    def wrong(self, agent: Agent, setting: Setting) -> Iterator[Diagnostic]:
         place = self.place.name
-        if all(ref.name != place for ref in agent.starts):
-            return self.never_comes(agent, self.place, setting)
-        stays = f"{agent.name} is not mobile: it stays in {place}"
-        starts = "may start" if agent.is_somewhere else "starts"
-        message = stays if agent.mobile is None else f"{agent.name} {starts} in {place}"
-        return error("PML252", message, self.span, "let it start somewhere else")
+        if any(ref.name == place for ref in agent.starts):
+            starts = "may start" if agent.is_somewhere else "starts"
+            stays = f"{agent.name} is not mobile: it stays in {place}"
+            message = stays if agent.mobile is None else f"{agent.name} {starts} in {place}"
+            yield error("PML252", message, self.span, "let it start somewhere else")
+        yield from self.never_comes(agent, self.place, setting)
 
     @property
     def shunned(self) -> Tuple[str, ...]:

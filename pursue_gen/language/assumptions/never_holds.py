@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Iterator, List, Tuple
+from typing import Iterator, List
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import Assumption, Setting
@@ -25,8 +25,8 @@ class NeverHolds(Assumption):
 
     condition: Condition
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("not {condition:bracketed=(visitor at a and guest at a)}")
-    forms: ClassVar[Tuple[Form, ...]] = (Form("what never holds", "not ({agent} at {POI} and {agent} at {POI})"),)
+    template = Template("not {condition:bracketed=(visitor at a and guest at a)}")
+    forms = (Form("what never holds", "not ({agent} at {POI} and {agent} at {POI})"),)
 
     @property
     def clause(self) -> str:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Span, units
+from pursue_gen.diagnostics import NOWHERE, Span
 from pursue_gen.language.assumptions.base import NotSooner
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.template import Template
-from pursue_gen.language.word import Form, Numbers
+from pursue_gen.language.word import Form
 
 
 @dataclass(frozen=True)
@@ -21,17 +20,11 @@ class NotBefore(NotSooner):
     event: Ref
     time: Number
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("{agent=guest} does {event=call} after {time:time=60}")
-    forms: ClassVar[Tuple[Form, ...]] = (Form("from when on somebody does something", template.to_fill_in),)
-    numbers: ClassVar[Numbers] = {"after": "It begins that later than {} after the start.".format}
-
-    @property
-    def clause(self) -> str:
-        return f"{self.agent.shown} does {self.event.shown} only later than {units(self.time)} after the start"
+    template = Template("{agent=guest} does {event=call} after {time:time=60}")
+    forms = (Form("from when on somebody does something", template.to_fill_in),)
+    numbers = {"after": "It begins that later than {} after the start.".format}
+    says = "{agent} does {event} only later than {time} after the start"
+    counts_since = "the start"
 
     def allows(self, event: str, within: Number) -> bool:
         return True
-
-    @property
-    def since(self) -> str:
-        return "the start"

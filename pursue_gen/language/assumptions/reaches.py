@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil
-from typing import ClassVar, Dict, Iterator, Mapping, Optional, Sequence, Tuple
+from typing import Dict, Iterator, Mapping, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units, warning
 from pursue_gen.language.assumptions.base import SHORTEST_STAY, AboutOne, Assumption, Setting, latest_to, visited
@@ -13,7 +13,7 @@ from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
 from pursue_gen.language.times import like, written_time
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
@@ -26,32 +26,20 @@ class Reaches(AboutOne):
     time: Number
     event: Ref
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template(
-        "{agent=mechanic} reaches {place:POI=m1} within {time:time=180} after {event=call1}"
-    )
-    own_words: ClassVar[Tuple[Word, ...]] = (Word("reaches", "The place to which it comes in time.", True),)
-    forms: ClassVar[Tuple[Form, ...]] = (Form("how soon somebody comes when called", template.to_fill_in),)
-    numbers: ClassVar[Numbers] = {"within": "It has been there {} after the event.".format}
-    number: ClassVar[str] = "time"
-    nearest: ClassVar[int] = SHORTEST_STAY
-    in_rests: ClassVar[bool] = True
-    counts: ClassVar[bool] = True
-    sets_off: ClassVar[bool] = True
-
-    @property
-    def subject(self) -> str:
-        return f"assume: {self.template.written(self, time='…')}"
-
-    @property
-    def clause(self) -> str:
-        return f"{self.agent.shown} reaches {self.place.shown} within {units(self.time)} after {self.event.shown}"
+    template = Template("{agent=mechanic} reaches {place:POI=m1} within {time:time=180} after {event=call1}")
+    own_words = (Word("reaches", "The place to which it comes in time.", True),)
+    forms = (Form("how soon somebody comes when called", template.to_fill_in),)
+    numbers = {"within": "It has been there {} after the event.".format}
+    number = "time"
+    nearest = SHORTEST_STAY
+    in_rests = True
+    counts = True
+    sets_off = True
+    says = "{agent} reaches {place} within {time} after {event}"
+    counts_since = "the first {event} that {agent} has not followed"
 
     def allows(self, event: str, within: Number) -> bool:
         return True
-
-    @property
-    def since(self) -> str:
-        return f"the first {self.event.shown} that {self.agent.shown} has not followed"
 
     @property
     def counted(self) -> Tuple[str, Mapping[str, str]]:
@@ -66,34 +54,32 @@ class Reaches(AboutOne):
         needs `stay` time units before it sets off again."""
         return exact((self.time if end == self.place.name else latest[end] - stay) - lasts)
 
-    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+    def wrong(self, agent: Agent, setting: Setting) -> Iterator[Diagnostic]:
         place = self.place.name
         if self.time <= 0:
-            return error("PML251", "within 0 assumes that it is always there", self.span, "expected more than 0")
+            yield error("PML251", "within 0 assumes that it is always there", self.span, "expected more than 0")
         if agent.mobile is None and place == agent.starts_text:
-            return warning("PML254", f"{agent.name} is not mobile: it stays in {place} anyway", self.span, "delete it")
+            yield warning("PML254", f"{agent.name} is not mobile: it stays in {place} anyway", self.span, "delete it")
         if all(ref.name != self.event.name for each in setting.agents for ref in each.can_do):
             message = f"nobody can do {self.event.name} anyway"
-            return warning("PML254", message, self.event.span, "delete the assumption, or let somebody do it: can_do")
-        return self._too_soon(agent, setting) or next(self._beside(agent, setting), None)
+            yield warning("PML254", message, self.event.span, "delete the assumption, or let somebody do it: can_do")
+        yield from self._too_soon(agent, setting)
+        yield from self._beside(agent, setting)
 
-    def _too_soon(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
-        """An error where the event may find it so that it cannot be there in time, wherever it may be."""
+    def _too_soon(self, agent: Agent, setting: Setting) -> Iterator[Diagnostic]:
+        """Errors where the event may find it so that it cannot be there in time, wherever it may be."""
         ways, place = setting.open_ways(agent), self.place.name
         latest, longest = self.latest(ways, setting.shortest_stay), setting.longest(agent)
         for here in visited(agent, setting):
-            if here == place:
-                continue
-            if here not in latest:
-                message = f"no way that is always open leads {agent.name} from {here} to {place}"
-                return error("PML252", message, self.span, f"connect {here} and {place}, without only_if")
             needed = longest.get(here, 0) + setting.shortest_stay
-            if latest[here] < needed:
+            if here != place and here not in latest:
+                message = f"no way that is always open leads {agent.name} from {here} to {place}"
+                yield error("PML252", message, self.span, f"connect {here} and {place}, without only_if")
+            elif here != place and latest[here] < needed:
                 sooner = like(exact(self.time + needed - latest[here]), self.time)
                 where = f"where {self.event.name} finds it on its way to {here}, or busy there"
                 message = f"{agent.name} may need {units(sooner)} to {place} {where}"
-                return error("PML252", message, self.span, f"write within {written_time(sooner)} or more")
-        return None
+                yield error("PML252", message, self.span, f"write within {written_time(sooner)} or more")
 
     def _beside(self, agent: Agent, setting: Setting) -> Iterator[Diagnostic]:
         """Errors where something else could keep it from going there."""

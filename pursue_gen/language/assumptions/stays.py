@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Optional, Tuple
+from typing import Iterator, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import Between, Departure, Setting, visited
@@ -13,7 +13,7 @@ from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
 from pursue_gen.language.times import like, time_units, written_time
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
@@ -25,34 +25,26 @@ class Stays(Between, Departure):
     least: Number
     most: Number
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("{agent=visitor} stays {least:time=5} to {most:time=20} at each place")
-    own_words: ClassVar[Tuple[Word, ...]] = (Word("stays", "How long it stays at each place.", True),)
-    forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody stays at each place", template.to_fill_in),)
-    numbers: ClassVar[Numbers] = {
+    template = Template("{agent=visitor} stays {least:time=5} to {most:time=20} at each place")
+    own_words = (Word("stays", "How long it stays at each place.", True),)
+    forms = (Form("how long somebody stays at each place", template.to_fill_in),)
+    numbers = {
         "stays": "It sets off {} after it came, or after the start, or later.".format,
         "to": "It has set off {} after it came, or after the start.".format,
     }
-
-    @property
-    def clause(self) -> str:
-        return f"{self.agent.shown} stays {self.least_to_most} at each place"
+    says = "{agent} stays {least_to_most} at each place"
+    counts_since = "{agent}'s arrival"
 
     @property
     def window(self) -> Tuple[Number, Number]:
         return self.least, self.most
 
-    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+    def wrong(self, agent: Agent, setting: Setting) -> Iterator[Diagnostic]:
         why = f"whoever arrives rests for {time_units(like(setting.rest, self.most))} before it can set off"
-        found = self.ill_timed("stays", why, setting)
-        if found is not None:
-            return found
+        yield from self.ill_timed("stays", why, setting)
         for each in setting.assumptions:
             if isinstance(each, Leaves) and each.binds(agent) and each.time < self.least:
                 least = written_time(self.least)
                 message = f"{agent.name} stays {least} or longer, and is assumed to leave {each.place.name} sooner"
-                return error("PML264", message, self.span, "assume one of the two")
-        return self.never_away(agent, visited(agent, setting), setting)
-
-    @property
-    def since(self) -> str:
-        return f"{self.agent.shown}'s arrival"
+                yield error("PML264", message, self.span, "assume one of the two")
+        yield from self.never_away(agent, visited(agent, setting), setting)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Iterator, Optional, Sequence, Tuple
+from typing import Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, units
 from pursue_gen.language.assumptions.at_most import AtMost
@@ -12,7 +12,7 @@ from pursue_gen.language.numbers import Number, whole_above
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
@@ -25,11 +25,12 @@ class Waits(NotSooner):
     time: Number
     span: Span = NOWHERE
     then: Optional[Ref] = None
-    template: ClassVar[Template] = Template("{agent=guest} waits {time:time=5} between {event=call} [and {then:event}]")
-    own_words: ClassVar[Tuple[Word, ...]] = (Word("waits", "How many units of time it waits at least.", True),)
-    forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody waits in between", template.to_fill_in),)
-    numbers: ClassVar[Numbers] = {"waits": "The next one begins {} after the end of the last, or later.".format}
-    counts: ClassVar[bool] = True  # whether it has happened: the first time is free
+    template = Template("{agent=guest} waits {time:time=5} between {event=call} [and {then:event}]")
+    own_words = (Word("waits", "How many units of time it waits at least.", True),)
+    forms = (Form("how long somebody waits in between", template.to_fill_in),)
+    numbers = {"waits": "The next one begins {} after the end of the last, or later.".format}
+    counts = True  # whether it has happened: the first time is free
+    counts_since = "{agent}'s last {event}"
 
     @property
     def following(self) -> Ref:
@@ -46,12 +47,9 @@ class Waits(NotSooner):
     def allows(self, event: str, within: Number) -> bool:
         return self.following.name != event or self.time < within
 
-    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
-        return super().wrong(agent, setting) or self.never_does(agent, self.following)
-
-    @property
-    def since(self) -> str:
-        return f"{self.agent.shown}'s last {self.event.shown}"
+    def wrong(self, agent: Agent, setting: Setting) -> Iterator[Diagnostic]:
+        yield from super().wrong(agent, setting)
+        yield from self.never_does(agent, self.following)
 
     @classmethod
     def missing(cls, setting: Setting, longest: Number) -> Iterator[Tuple[Assumption, Sequence[int]]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Callable, ClassVar, Iterator, Tuple
+from typing import Any, Callable, Iterator
 
 from pursue_gen.diagnostics import NOWHERE, Span
 from pursue_gen.language.conditions import Condition, Not, condition_text, condition_words, held_by
@@ -22,12 +22,10 @@ class Avoid(Safety):
     span: Span = NOWHERE
     optional: int = 0
 
-    template: ClassVar[Template] = Template("avoid {event:event or condition=e}")
-    note: ClassVar[str] = "or a condition: avoid open is_true"
-    own_words: ClassVar[Tuple[Word, ...]] = (
-        Word("avoid", "This event must never happen, or this condition must never hold."),
-    )
-    forms: ClassVar[Tuple[Form, ...]] = (
+    template = Template("avoid {event:event or condition=e}")
+    note = "or a condition: avoid open is_true"
+    own_words = (Word("avoid", "This event must never happen, or this condition must never hold."),)
+    forms = (
         Form("never", "avoid {event}"),
         Form("never while …", "avoid {agent} at {POI} and {agent} on_way"),
     )
@@ -61,9 +59,9 @@ class Always(Safety):
     span: Span = NOWHERE
     optional: int = 0
 
-    template: ClassVar[Template] = Template("always {condition=open is_true}")
-    own_words: ClassVar[Tuple[Word, ...]] = (Word("always", "This condition must hold at every moment.", True),)
-    forms: ClassVar[Tuple[Form, ...]] = (Form("what always holds", "always any robot at {POI}"),)
+    template = Template("always {condition=open is_true}")
+    own_words = (Word("always", "This condition must hold at every moment.", True),)
+    forms = (Form("what always holds", "always any robot at {POI}"),)
 
     @property
     def text(self) -> str:

@@ -214,8 +214,8 @@ class Safety(StatedObjective):
         if broken is not None and kind in ("state", "agent") and self.speaks_of(kind, name):
             yield f"must never be: {shown(condition_words(broken))}"
 
-    def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref]]) -> Safety:
-        """The same in a building with these places and ways."""
+    def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref, str]]) -> Safety:
+        """The same in a building with these places and ways: from, to, and the lift that they go by; "": none."""
         return self
 
     def kept_by(self, robot: Ref) -> Safety:

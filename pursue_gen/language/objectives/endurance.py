@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Callable, ClassVar, Iterator, Optional, Sequence, Tuple
+from typing import Callable, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed, units
 from pursue_gen.language.conditions import At, Not, Who
@@ -14,7 +14,7 @@ from pursue_gen.language.refs import Ref
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.language.template import Template
 from pursue_gen.language.times import instead, written_time
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 MOST_BATTERY_PARTS = 20
 """The most parts of a battery by time: its automaton has some four locations for each. Measured on night_bell: 152
@@ -38,14 +38,14 @@ class Endurance(Safety):
     parts: int = 1
     span: Span = NOWHERE
     optional: int = 0
-    word: ClassVar[str] = ""
-    limited_by: ClassVar[str] = "lasts"
-    last: ClassVar[bool] = True
-    template: ClassVar[Template] = Template(
+    word = ""
+    limited_by = "lasts"
+    last = True
+    template = Template(
         '{agent:"agent"=bot} lasts {lasts:time=1200}, charges in {charge:time=300} [in {parts:count} parts]'
         " at {dock:POI=dock}"
     )
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    own_words = (
         Word("lasts", "How long the robot may be away from the charger since its battery was full.", True),
         Word(
             "charges",
@@ -54,11 +54,11 @@ class Endurance(Safety):
         ),
         Word("parts", "So many equal parts, each of which counts when it is done, and nothing before.", True),
     )
-    numbers: ClassVar[Numbers] = {
+    numbers = {
         "lasts": "Since it was full at the charger, the robot is back there within {}.".format,
         "in": "It is full again after {} at the charger, if the robot does not leave before.".format,
     }
-    forms: ClassVar[Tuple[Form, ...]] = (
+    forms = (
         Form("a battery that lasts some time", template.to_fill_in),
         Form("a battery of which parts of a charge count", template.to_fill_in.replace(" at ", " in {=5} parts at ")),
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Callable, ClassVar, Iterator, Sequence, Tuple
+from typing import Any, Callable, Iterator, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed, units
 from pursue_gen.language.conditions import AllOf, At, Condition, Not, Who, by_robot, one_at, who_text
@@ -15,7 +15,7 @@ from pursue_gen.language.symbols import Role
 from pursue_gen.language.template import Template
 from pursue_gen.language.times import units_of_time, written_time
 from pursue_gen.language.tree_reader import TreeReader
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
@@ -32,20 +32,16 @@ class Escort(Safety):
     who: Who
     span: Span = NOWHERE
     optional: int = 0
-    limited_by: ClassVar[str] = "deadline"
+    limited_by = "deadline"
 
-    template: ClassVar[Template] = Template(
+    template = Template(
         "escort {ward:agent=visitor} at {place:POIs=a, b} within {deadline:time=5} by {who:patroller=bot1}",
         patroller=PATROLLER._replace(rules=""),
     )
-    note: ClassVar[str] = "or: by bot1 or bot2, by any robot"
-    own_words: ClassVar[Tuple[Word, ...]] = (
-        Word("escort", "Somebody who is not alone at these places for long.", True),
-    )
-    numbers: ClassVar[Numbers] = {}
-    forms: ClassVar[Tuple[Form, ...]] = (
-        Form("somebody who is escorted", "escort {agent} at {POI} within {=5} by {agent}"),
-    )
+    note = "or: by bot1 or bot2, by any robot"
+    own_words = (Word("escort", "Somebody who is not alone at these places for long.", True),)
+    numbers = {}
+    forms = (Form("somebody who is escorted", "escort {agent} at {POI} within {=5} by {agent}"),)
 
     @classmethod
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Tuple[Safety, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import Any, Callable, ClassVar, Iterator, Sequence, Tuple, cast
+from typing import Any, Callable, ClassVar, Iterable, Iterator, Sequence, Tuple, cast
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed
 from pursue_gen.language.conditions import AllOf, At, AtMostOf, Atom, Not, OnWay, Who, some_text
@@ -73,13 +73,13 @@ class PlaceHolds(Holds):
     span: Span = NOWHERE
     optional: int = 0
 
-    template: ClassVar[Template] = Template("place {places:POIs=a} holds {most,who:some=1 robot}")
-    note: ClassVar[str] = "or 2 robots, 2 agents, 1 of bot1, bot2"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    template = Template("place {places:POIs=a} holds {most,who:some=1 robot}")
+    note = "or 2 robots, 2 agents, 1 of bot1, bot2"
+    own_words = (
         Word("place", "The places with room for so many; behind each, those to which somebody comes.", True),
         Word("holds", "There is room for so many, and no more.", True),
     )
-    forms: ClassVar[Tuple[Form, ...]] = (Form("what a place holds", "place {POI} holds {=1} robot"),)
+    forms = (Form("what a place holds", "place {POI} holds {=1} robot"),)
 
     @property
     def where(self) -> str:
@@ -112,11 +112,9 @@ class WayHolds(Holds):
     span: Span = NOWHERE
     optional: int = 0
 
-    template: ClassVar[Template] = Template("way {a:POI=a} to {b:POI=b} holds {most,who:some=1 robot}")
-    own_words: ClassVar[Tuple[Word, ...]] = (
-        Word("way", "The way between two places, in both directions together.", True),
-    )
-    forms: ClassVar[Tuple[Form, ...]] = (Form("what a way holds", "way {POI} to {POI} holds {=1} robot"),)
+    template = Template("way {a:POI=a} to {b:POI=b} holds {most,who:some=1 robot}")
+    own_words = (Word("way", "The way between two places, in both directions together.", True),)
+    forms = (Form("what a way holds", "way {POI} to {POI} holds {=1} robot"),)
 
     @property
     def where(self) -> str:
@@ -144,9 +142,9 @@ class LiftHolds(Holds):
     building: Tuple[Tuple[Ref, Ref], ...] = ()
     optional: int = 0
 
-    template: ClassVar[Template] = Template("lift {lift:lift=lift1} holds {most,who:some=1 robot}")
-    note: ClassVar[str] = "without it, each lift holds 1 robot"
-    forms: ClassVar[Tuple[Form, ...]] = (Form("what a lift holds", "lift {lift} holds {=1} robot"),)
+    template = Template("lift {lift:lift=lift1} holds {most,who:some=1 robot}")
+    note = "without it, each lift holds 1 robot"
+    forms = (Form("what a lift holds", "lift {lift} holds {=1} robot"),)
 
     @property
     def where(self) -> str:
@@ -158,6 +156,9 @@ class LiftHolds(Holds):
 
     def there(self, who: Who) -> Sequence[Atom]:
         return [OnWay(who, a, b, True) for a, b in self.building]
+
+    def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref, str]]) -> LiftHolds:
+        return replace(self, building=_each_once((a, b) for a, b, lift in ways if lift == self.lift.name))
 
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if (kind, name) == ("lift", self.lift.name):
@@ -199,11 +200,11 @@ class EveryPlaceHolds(EveryHolds):
     building: Tuple[Ref, ...] = ()
     optional: int = 0
 
-    template: ClassVar[Template] = Template("every place holds {most,who:some=1 robot}")
-    forms: ClassVar[Tuple[Form, ...]] = (Form("what every place holds", "every place holds {=1} robot"),)
-    in_one: ClassVar[str] = "at one place"
+    template = Template("every place holds {most,who:some=1 robot}")
+    forms = (Form("what every place holds", "every place holds {=1} robot"),)
+    in_one = "at one place"
 
-    def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref]]) -> EveryPlaceHolds:
+    def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref, str]]) -> EveryPlaceHolds:
         return replace(self, building=tuple(places))
 
     def atoms(self) -> Iterator[Sequence[Atom]]:
@@ -229,15 +230,20 @@ class EveryWayHolds(EveryHolds):
     building: Tuple[Tuple[Ref, Ref], ...] = ()
     optional: int = 0
 
-    template: ClassVar[Template] = Template("every way holds {most,who:some=1 robot}")
-    forms: ClassVar[Tuple[Form, ...]] = (Form("what every way holds", "every way holds {=1} robot"),)
-    in_one: ClassVar[str] = "on one way"
+    template = Template("every way holds {most,who:some=1 robot}")
+    forms = (Form("what every way holds", "every way holds {=1} robot"),)
+    in_one = "on one way"
 
-    def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref]]) -> EveryWayHolds:
-        return replace(self, building=tuple({frozenset((a.name, b.name)): (a, b) for a, b in ways}.values()))
+    def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref, str]]) -> EveryWayHolds:
+        return replace(self, building=_each_once((a, b) for a, b, _ in ways))
 
     def atoms(self) -> Iterator[Sequence[Atom]]:
         return ([OnWay(who, a, b, True) for who in self.who] for a, b in self.building)
+
+
+def _each_once(ways: Iterable[Tuple[Ref, Ref]]) -> Tuple[Tuple[Ref, Ref], ...]:
+    """The ways, one for both directions."""
+    return tuple({frozenset((a.name, b.name)): (a, b) for a, b in ways}.values())
 
 
 def rooms_in(objectives: Sequence[StatedObjective]) -> Iterator[Holds]:

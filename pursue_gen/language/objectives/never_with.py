@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, ClassVar, Iterator, Optional, Tuple
+from typing import Callable, Iterator, Optional
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.conditions import At, Who
@@ -23,12 +23,10 @@ class NeverWith(Safety):
     place: Optional[Ref] = None
     optional: int = 0
 
-    template: ClassVar[Template] = Template("{first:agent=bot1} never_with {second:agent=bot2} [at {place:POI=a}]")
-    note: ClassVar[str] = "at is optional"
-    own_words: ClassVar[Tuple[Word, ...]] = (
-        Word("never_with", "These two agents must never be at one place, nor meet on a way."),
-    )
-    forms: ClassVar[Tuple[Form, ...]] = (
+    template = Template("{first:agent=bot1} never_with {second:agent=bot2} [at {place:POI=a}]")
+    note = "at is optional"
+    own_words = (Word("never_with", "These two agents must never be at one place, nor meet on a way."),)
+    forms = (
         Form("two who never meet", "{agent} never_with {agent}"),
         Form("two who are never at one place", "{agent} never_with {agent} at {POI}"),
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Callable, ClassVar, Iterator, Mapping, Optional, Sequence, Tuple
+from typing import Any, Callable, Iterator, Mapping, Optional, Sequence, Tuple
 
 from lark import Token
 
@@ -16,7 +16,7 @@ from pursue_gen.language.symbols import Role
 from pursue_gen.language.template import Filling, Template
 from pursue_gen.language.times import like, written_time
 from pursue_gen.language.tree_reader import TreeReader
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 
 def _read_who(reader: TreeReader, tree: Any) -> Who:
@@ -55,15 +55,15 @@ class Patrol(Safety):
     order: Tuple[str, ...] = ()
     least: Optional[int] = None
     optional: int = 0
-    limited_by: ClassVar[str] = "every"
-    aside: ClassVar[Tuple[str, ...]] = ("least",)
+    limited_by = "every"
+    aside = ("least",)
 
-    template: ClassVar[Template] = Template(
+    template = Template(
         "patrol {place:POIs=a, b} [in order] [every {every:time=60}] by {who:patroller=bot1}",
         patroller=PATROLLER,
     )
-    note: ClassVar[str] = "or: by bot1 or bot2, by any robot; in order and every are optional"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    note = "or: by bot1 or bot2, by any robot; in order and every are optional"
+    own_words = (
         Word("patrol", "Places at which somebody has to be again and again.", True),
         Word("in", "In this order: a visit counts in its turn only."),
         Word(
@@ -79,10 +79,8 @@ class Patrol(Safety):
         ),
         Word("by", "Who has to be there: an agent, one of several, or any robot.", True),
     )
-    numbers: ClassVar[Numbers] = {
-        "every": "Somebody is there again {} after the last one left, or after the start.".format,
-    }
-    forms: ClassVar[Tuple[Form, ...]] = (
+    numbers = {"every": "Somebody is there again {} after the last one left, or after the start.".format}
+    forms = (
         Form("somebody who comes again and again", "patrol {POI} every {=60} by {agent}"),
         Form("one of two who come again and again", "patrol {POI} every {=60} by {agent} or {agent}"),
         Form("somebody who comes as often as can be promised", "patrol {POI} by {agent}"),

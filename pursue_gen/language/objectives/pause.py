@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Callable, ClassVar, Iterator, Mapping, Optional, Sequence, Tuple
+from typing import Callable, Iterator, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
 from pursue_gen.language.numbers import Number, whole_below
@@ -12,7 +12,7 @@ from pursue_gen.language.refs import Ref
 from pursue_gen.language.symbols import Role
 from pursue_gen.language.template import Template
 from pursue_gen.language.times import instead, units_of_time, written_time
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
@@ -26,17 +26,13 @@ class Pause(Safety):
     then: Optional[Ref] = None
     optional: int = 0
 
-    template: ClassVar[Template] = Template(
-        "at_least {time:time=600} between {event=look1} [and {then:event=look1}]"
-    )
-    note: ClassVar[str] = "and is optional: it is the same event then"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    template = Template("at_least {time:time=600} between {event=look1} [and {then:event=look1}]")
+    note = "and is optional: it is the same event then"
+    own_words = (
         Word("at_least", "So many units of time, or more: what comes sooner breaks it, or does not count.", True),
     )
-    numbers: ClassVar[Numbers] = {
-        "at_least": "The next one begins {} after the end of the last, or later.".format,
-    }
-    forms: ClassVar[Tuple[Form, ...]] = (
+    numbers = {"at_least": "The next one begins {} after the end of the last, or later.".format}
+    forms = (
         Form("a pause before something happens again", "at_least {=600} between {event}"),
         Form("a pause between two events", "at_least {=600} between {event} and {event}"),
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Callable, ClassVar, Iterator, Optional, Sequence, Tuple
+from typing import Any, Callable, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed, units
 from pursue_gen.language.numbers import Number, exact, whole_below
@@ -13,7 +13,7 @@ from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.language.template import Filling, Template
 from pursue_gen.language.times import instead, like, units_of_time, written_time
 from pursue_gen.language.tree_reader import TreeReader
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 MOST_EVENTS = 5
 """So many events stand behind one `do` at most: the order in which they happen is free, and each order counts."""
@@ -48,12 +48,12 @@ class Reach(StatedObjective):
     optional: int = 0
     times: int = 1
     apart: Optional[Number] = None
-    listed_in: ClassVar[str] = "reach"
-    word: ClassVar[str] = "reach_objective"
-    limited_by: ClassVar[str] = "within"
-    once: ClassVar[bool] = True
+    listed_in = "reach"
+    word = "reach_objective"
+    limited_by = "within"
+    once = True
 
-    template: ClassVar[Template] = Template(
+    template = Template(
         "do {events:things=e1 and e2} [{times:often}] [at_least {apart:time} apart] [after {after:time=10}] "
         "[within {within:time=60}]",
         things=Filling(
@@ -61,21 +61,21 @@ class Reach(StatedObjective):
         ),
         often=Filling("often", _read_often, _often_text, rules='often: TWICE | NUMBER "times"'),
     )
-    note: ClassVar[str] = "or: do e1; do e1 3 times at_least 60 apart; after and within are optional"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    note = "or: do e1; do e1 3 times at_least 60 apart; after and within are optional"
+    own_words = (
         Word("do", "The event that is wanted."),
         Word("twice", "Two times.", True),
         Word("apart", "So many units of time between two times that count.", True),
         Word("after", "Later than so many units of time after the start."),
     )
-    numbers: ClassVar[Numbers] = {
+    numbers = {
         "at_least": "The next time counts {} after the last one that counted, or later.".format,
         "after": lambda time, number: (
             f"It counts when it happens {f'later than {time} after the start' if number else 'at any time'}."
         ),
         "within": "It must have happened {} after the start at most.".format,
     }
-    forms: ClassVar[Tuple[Form, ...]] = (
+    forms = (
         Form("achieve something once", "do {event}"),
         Form("achieve something several times", "do {event} {=2} times at_least {=60} apart"),
         Form("achieve several things in time", "do {event} and {event} within {=60}"),

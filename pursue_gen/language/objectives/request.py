@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Callable, ClassVar, Iterator, Mapping, Sequence, Tuple
+from typing import Any, Callable, Iterator, Mapping, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
 from pursue_gen.language.numbers import Number
@@ -35,22 +35,20 @@ class Request(Safety):
     number: int = 0
     span: Span = NOWHERE
     optional: int = 0
-    limited_by: ClassVar[str] = "deadline"
-    is_answered: ClassVar[bool] = True
+    limited_by = "deadline"
+    is_answered = True
 
-    template: ClassVar[Template] = Template(
+    template = Template(
         "if {trigger:event=order} then {response:event=pack} within {deadline:time=120}, at_most {most:count=3} open"
     )
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    own_words = (
         Word(
             "open",
             "So many wait for their answer at most, as is assumed; each of them is answered, the oldest first.",
             True,
         ),
     )
-    forms: ClassVar[Tuple[Form, ...]] = (
-        Form("an answer to each of several at once", "if {event} then {event} within {=120}, at_most {=3} open"),
-    )
+    forms = (Form("an answer to each of several at once", "if {event} then {event} within {=120}, at_most {=3} open"),)
 
     @classmethod
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Tuple[Safety, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Callable, ClassVar, Iterator, Sequence, Tuple
+from typing import Callable, Iterator, Sequence
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
 from pursue_gen.language.conditions import EventOrCondition, condition_text, condition_words, held_by
@@ -13,7 +13,7 @@ from pursue_gen.language.refs import Ref
 from pursue_gen.language.symbols import Role
 from pursue_gen.language.template import Template, event_or_condition_text
 from pursue_gen.language.times import units_of_time, written_time
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 
 def _shown(what: EventOrCondition) -> str:
@@ -34,14 +34,14 @@ class Respond(Safety):
     deadline: Number
     span: Span = NOWHERE
     optional: int = 0
-    limited_by: ClassVar[str] = "deadline"
-    is_answered: ClassVar[bool] = True
+    limited_by = "deadline"
+    is_answered = True
 
-    template: ClassVar[Template] = Template(
+    template = Template(
         "if {trigger:event or condition=e1} then {response:event or condition=e2} within {deadline:time=20}"
     )
-    note: ClassVar[str] = "or conditions: if bot1 at a then open is_true within 20"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    note = "or conditions: if bot1 at a then open is_true within 20"
+    own_words = (
         Word(
             "if",
             "After this event, or when this condition comes to hold, there has to be an answer: one for all that come "
@@ -50,8 +50,8 @@ class Respond(Safety):
         Word("then", "The event that has to follow, or the condition that has to hold at some moment."),
         Word("within", "How many units of time later the answer must have come."),
     )
-    numbers: ClassVar[Numbers] = {"within": "The answer must have come {} later at most.".format}
-    forms: ClassVar[Tuple[Form, ...]] = (
+    numbers = {"within": "The answer must have come {} later at most.".format}
+    forms = (
         Form("an answer in time", "if {event} then {event} within {=20}"),
         Form("an answer to what comes to hold", "if {agent} at {POI} then {agent} at {POI} within {=20}"),
     )

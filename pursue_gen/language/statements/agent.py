@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, floor
-from typing import Any, ClassVar, Iterator, Optional, Tuple
+from typing import Any, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, warning
 from pursue_gen.language.lengths import metres
@@ -60,9 +60,9 @@ class Agent(Labelled):
     has: Tuple[Ref, ...] = ()
     or_at: Tuple[Ref, ...] = ()
 
-    listed_in: ClassVar[str] = "agents"
-    symbol: ClassVar[str] = "Class"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    listed_in = "agents"
+    symbol = "Class"
+    own_words = (
         Word("agent", "Somebody who does something: a robot, a person, a thing with a will of its own."),
         Word(
             "human",
@@ -82,18 +82,18 @@ class Agent(Labelled):
         Word("can_do", "The events that it does.", may_break=True),
         Word("reacts_to", "The collaborative events in which it is the partner.", may_break=True),
     )
-    template: ClassVar[Template] = Template(
+    template = Template(
         'agent {name="bot"} [label {label:name}] [human] [controllable] [mobile {mobile:number=3}]'
         " [speed {speed:number}] [radius {radius:metres}] [tolerance {tolerance:metres}] [inflation {inflation:metres}]"
         " [carries {carries:count}] [has {has:things}]"
         " location {location,or_at:starts=a} [can_do {can_do:events=e1, e2}] [reacts_to {reacts_to:events=e3}]",
         starts=Filling("starts", _read_starts, _starts_text, "POI", ("location", "or"), 'starts: ref ("or" ref)*'),
     )
-    note: ClassVar[str] = (
+    note = (
         'location is required; behind the name: label "Porter 1"; in place of mobile: speed 0.5; before location, of a '
         "robot: radius 0.2 tolerance 0.1 inflation 0.5; carries 2 has box; where it is not known: location a or b"
     )
-    forms: ClassVar[Tuple[Form, ...]] = (
+    forms = (
         Form("a robot", 'agent "{=bot}" controllable mobile {=1} location {POI} can_do {event}'),
         Form(
             "a robot that carries several things",
@@ -106,10 +106,10 @@ class Agent(Labelled):
         ),
         Form("a person who helps", 'agent "{=helper}" human controllable mobile {=1} location {POI} can_do {event}'),
     )
-    declares: ClassVar[str] = "agent"
-    described: ClassVar[str] = "{0.role}"
-    shortest: ClassVar[str] = 'agent "{name}" location {place}'
-    parts: ClassVar[Tuple[str, ...]] = template.begins
+    declares = "agent"
+    described = "{0.role}"
+    shortest = 'agent "{name}" location {place}'
+    parts = template.begins
 
     @classmethod
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Agent:

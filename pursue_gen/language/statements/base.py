@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any, Callable, ClassVar, Dict, Iterator, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, Span, error, listed
+from pursue_gen.diagnostics import Diagnostic, Span, error, listed, units
 from pursue_gen.language.conditions import Condition, names_in
 from pursue_gen.language.numbers import Number, exact
 from pursue_gen.language.refs import Ref, twice
@@ -12,6 +13,8 @@ from pursue_gen.language.template import Template
 from pursue_gen.language.times import like, units_of_time, window_text, written_time
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Numbers, Word
+
+_FIELD = re.compile(r"\{(\w+)\}")
 
 
 class Written:
@@ -51,6 +54,10 @@ class Written:
     def text(self) -> str:
         """It as its author may write it."""
         return self.template.written(self)
+
+    def told(self, form: str) -> str:
+        """A form such as `{agent} leaves {place} within {time}` with its fields: names as people read them, times."""
+        return _FIELD.sub(lambda field: _told(getattr(self, field[1])), form)
 
     def names(self) -> Iterator[Tuple[str, Ref]]:
         """Each name that it uses outside its conditions, behind the kind of thing that it stands for."""
@@ -143,7 +150,7 @@ class Labelled(StatementKind):
 
     name: str
     label: Optional[str]
-    labelled: ClassVar[bool] = True
+    labelled = True
 
     @property
     def shown(self) -> str:
@@ -191,6 +198,12 @@ class ForSome(StatementKind):
         if self.only_for and not any(self.admits(ref.name) for ref in self.only_for):
             message = f"{self.what} is for nobody: all that are named behind for stand behind except"
             yield error("PML164", message, self.span, "name somebody whom it is for, or delete except and what follows")
+
+
+def _told(value: object) -> str:
+    if isinstance(value, Ref):
+        return value.shown
+    return value if isinstance(value, str) else units(value)
 
 
 def check_window(name: str, low: Number, high: Number, word: str, span: Span) -> Iterator[Diagnostic]:

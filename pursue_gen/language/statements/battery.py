@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, ClassVar, Iterator, Optional, Tuple
+from typing import Callable, Iterator, Optional
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.numbers import Number
@@ -31,20 +31,20 @@ class Battery(Written):
     driving: Optional[Number] = None
     span: Span = NOWHERE
 
-    listed_in: ClassVar[str] = "batteries"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    listed_in = "batteries"
+    own_words = (
         Word("capacity", "What the battery holds when it is full, as it is at the start.", True),
         Word("uses", "What the robot uses in a unit of time on its way or at work. To stand still uses nothing.", True),
         Word("per", "For each unit of time, or metre.", True),
         Word("metre", "One unit of distance: what the robot uses on its way, in place of what it uses in time.", True),
         Word("recharges", "What is added in a unit of time in which the robot does something at the dock.", True),
     )
-    template: ClassVar[Template] = Template(
+    template = Template(
         '{agent:"agent"=bot} capacity {capacity:count=100} uses [{driving:number} per metre,] {uses:number=2} per unit'
         " [recharges {recharges:number=5} per unit at {dock:POI=dock}]"
     )
-    note: ClassVar[str] = "recharges … is optional; or: uses 2 per metre, 1 per unit"
-    forms: ClassVar[Tuple[Form, ...]] = (
+    note = "recharges … is optional; or: uses 2 per metre, 1 per unit"
+    forms = (
         Form("a battery that is recharged at a place", template.to_fill_in),
         Form("a battery that is used by distance", template.to_fill_in.replace("uses ", "uses {=1} per metre, ")),
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable, ClassVar, Iterator, Optional, Tuple
+from typing import Any, Callable, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.conditions import Condition, condition_words
@@ -37,9 +37,9 @@ class Connection(ForSome):
     through: Tuple[Ref, ...] = ()
     by: Optional[Ref] = None
 
-    listed_in: ClassVar[str] = "connections"
-    symbol: ClassVar[str] = "Interface"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    listed_in = "connections"
+    symbol = "Interface"
+    own_words = (
         Word("connect", "A way between two places, in both directions unless it is one_way. Write it once."),
         Word(
             "and",
@@ -50,15 +50,13 @@ class Connection(ForSome):
         Word("one_way", "From the first place to the second only. Without it, the way goes in both directions.", True),
         Word("through", "The doors that the way leads through, each of which opens for whoever sets off.", True),
     )
-    template: ClassVar[Template] = Template(
+    template = Template(
         "connect {a:POI=a} and {b:POI=b} distance {distance=3} [one_way] [through {through:doors}] [by {by:lift}] "
         + ForSome.for_whom
         + " [only_if {only_if:condition=open is_true}]"
     )
-    note: ClassVar[str] = (
-        "one_way and only_if are optional; between them: through d1; by lift1; for agv, cart, or except gerda"
-    )
-    forms: ClassVar[Tuple[Form, ...]] = (
+    note = ("one_way and only_if are optional; between them: through d1; by lift1; for agv, cart, or except gerda")
+    forms = (
         Form("a way between two places", "connect {POI} and {POI} distance {=1}"),
         Form("a way in one direction only", "connect {POI} and {POI} distance {=1} one_way"),
         Form("a way that is not always open", "connect {POI} and {POI} distance {=1} only_if {state} is_true"),
@@ -66,7 +64,7 @@ class Connection(ForSome):
         Form("a way by lift", "connect {POI} and {POI} distance {=1} by {lift}"),
         Form("a way for some agents only", "connect {POI} and {POI} distance {=1} for {agent}"),
     )
-    parts: ClassVar[Tuple[str, ...]] = template.begins
+    parts = template.begins
 
     @classmethod
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Connection:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, ClassVar, Iterator, Tuple
+from typing import Callable, Iterator
 
 from pursue_gen.diagnostics import NOWHERE, Span
 from pursue_gen.language.refs import Ref
@@ -21,17 +21,13 @@ class Dependency(StatementKind):
     value: bool
     span: Span = NOWHERE
 
-    listed_in: ClassVar[str] = "dependencies"
-    symbol: ClassVar[str] = "Operator"
-    own_words: ClassVar[Tuple[Word, ...]] = (
-        Word("stateDependency", "An event that is allowed only while a state has a value."),
-    )
-    template: ClassVar[Template] = Template("stateDependency: {event=work} only_if {state=open} {value:is=is_true}")
-    note: ClassVar[str] = "or is_false"
-    forms: ClassVar[Tuple[Form, ...]] = (
-        Form("an event that waits for a state", template.to_fill_in),
-    )
-    among: ClassVar[str] = "STATE"
+    listed_in = "dependencies"
+    symbol = "Operator"
+    own_words = (Word("stateDependency", "An event that is allowed only while a state has a value."),)
+    template = Template("stateDependency: {event=work} only_if {state=open} {value:is=is_true}")
+    note = "or is_false"
+    forms = (Form("an event that waits for a state", template.to_fill_in),)
+    among = "STATE"
 
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         value = str(self.value).lower()

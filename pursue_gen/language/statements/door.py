@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable, ClassVar, Iterator, Optional, Tuple
+from typing import Any, Callable, Iterator, Optional
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.numbers import Number
@@ -12,7 +12,7 @@ from pursue_gen.language.statements.base import Labelled
 from pursue_gen.language.template import Filling, Template
 from pursue_gen.language.times import written_time
 from pursue_gen.language.tree_reader import TreeReader
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 
 def _read_pose(reader: TreeReader, comment: Any) -> Optional[Pose]:
@@ -36,25 +36,23 @@ class Door(Labelled):
     label: Optional[str] = None
     pose: Optional[Pose] = None
 
-    listed_in: ClassVar[str] = "doors"
-    symbol: ClassVar[str] = "Interface"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    listed_in = "doors"
+    symbol = "Interface"
+    own_words = (
         Word("door", "A door that opens by itself for robots that set off through it.", True),
         Word("opens", "How long after it was asked to the door is open, at most: opens within 8.", True),
     )
-    template: ClassVar[Template] = Template(
+    template = Template(
         'door {name="d1"} [label {label:name}] opens within {opens_within:time=8} [{pose:pose}]',
         pose=Filling("POSE", _read_pose, lambda pose: f"//{pose_text(pose)}"),
     )
-    note: ClassVar[str] = "behind it, in a comment, the pose of its middle; ways lead through it: connect … through d1"
-    forms: ClassVar[Tuple[Form, ...]] = (Form("a door that opens by itself", 'door "{=d1}" opens within {=8}'),)
-    numbers: ClassVar[Numbers] = {
-        "within": "A way through it takes up to {} longer, as whoever sets off may have to wait for it.".format
-    }
-    declares: ClassVar[str] = "door"
-    described: ClassVar[str] = "a door that opens by itself"
-    aside: ClassVar[Tuple[str, ...]] = ("pose",)
-    shortest: ClassVar[str] = 'door "{name}" opens within 5'
+    note = "behind it, in a comment, the pose of its middle; ways lead through it: connect … through d1"
+    forms = (Form("a door that opens by itself", 'door "{=d1}" opens within {=8}'),)
+    numbers = {"within": "A way through it takes up to {} longer, as whoever sets off may have to wait for it.".format}
+    declares = "door"
+    described = "a door that opens by itself"
+    aside = ("pose",)
+    shortest = 'door "{name}" opens within 5'
 
     @property
     def in_words(self) -> str:

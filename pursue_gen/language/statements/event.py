@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor
-from typing import Any, Callable, ClassVar, Iterator, Optional, Tuple
+from typing import Any, Callable, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, warning
 from pursue_gen.language.conditions import Condition, condition_words
@@ -15,13 +15,16 @@ from pursue_gen.language.statements.base import Labelled, check_window
 from pursue_gen.language.template import Filling, Template
 from pursue_gen.language.times import like, window_text
 from pursue_gen.language.tree_reader import TreeReader
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 MOST_TIMES = 100
 """How often an event can happen at most that is counted: each count is a location of an automaton."""
 
 MOST_EVENT_PARTS = 20
 """Parts of an event at most: how many are done multiplies the states of the game."""
+
+_OF_WORK = "collaborative together location duration may_stop parts takes gives mounts needs only_if".split()
+"""What an event has that somebody does, and no order."""
 
 
 def _read_counted(reader: TreeReader, tree: Any) -> Tuple[Ref, int]:
@@ -72,9 +75,9 @@ class Event(Labelled):
     needs: Optional[Ref] = None
     on_order: bool = False
 
-    listed_in: ClassVar[str] = "events"
-    symbol: ClassVar[str] = "Event"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    listed_in = "events"
+    symbol = "Event"
+    own_words = (
         Word("event", "Something that can happen: what an agent does, alone or with a partner."),
         Word("collaborative", "It takes two at one place: one who can do it, and one who reacts to it."),
         Word("together", "Whoever takes part is busy until it ends. Without it, only the one who does it is.", True),
@@ -97,18 +100,18 @@ class Event(Labelled):
         Word("at_most", "So many and no more: how often it happens in all, or of how many something holds.", True),
         Word("times", "In the whole mission.", True),
     )
-    template: ClassVar[Template] = Template(
+    template = Template(
         'event {name="work"} [label {label:name}] [on_order] [collaborative] [together] [location {location:POI=a}]'
         " [duration {duration,latest:window=6}] [may_stop] [in {split:count=4} parts] [takes {takes,taken:counted}]"
         " [gives {gives,given:counted}] [mounts {mounts:thing}] [needs {needs:thing}] [at_most {at_most:count=2} times]"
         " [only_if {only_if:condition=open is_true}]",
         counted=Filling("counted", _read_counted, counted_text, "thing", rules="counted: [NUMBER] ref"),
     )
-    note: ClassVar[str] = (
+    note = (
         'all but the name is optional; or: duration 6 to 9; behind the name: label "do the work", on_order; behind the '
         "duration: may_stop in 4 parts, takes box, takes 2 box, gives box, mounts brush, needs brush"
     )
-    forms: ClassVar[Tuple[Form, ...]] = (
+    forms = (
         Form("something that can happen at a place", 'event "{=work}" location {POI} duration {=1}'),
         Form("something that takes more or less time", 'event "{=work}" location {POI} duration {=3} to {=5}'),
         Form("something that may be broken off", 'event "{=work}" location {POI} duration {=20} may_stop'),
@@ -132,13 +135,11 @@ class Event(Labelled):
             'event "{=ride}" collaborative together location {POI} duration {=4}',
         ),
     )
-    declares: ClassVar[str] = "event"
-    described: ClassVar[str] = "an event"
-    shortest: ClassVar[str] = 'event "{name}"'
-    numbers: ClassVar[Numbers] = {
-        "at_most": lambda _, times: f"It can happen {'once' if times == 1 else f'{times} times'} in all.",
-    }
-    parts: ClassVar[Tuple[str, ...]] = template.begins
+    declares = "event"
+    described = "an event"
+    shortest = 'event "{name}"'
+    numbers = {"at_most": lambda _, times: f"It can happen {'once' if times == 1 else f'{times} times'} in all."}
+    parts = template.begins
 
     @property
     def is_shared(self) -> bool:
@@ -208,20 +209,8 @@ class Event(Labelled):
 
     def _check_order(self) -> Iterator[Diagnostic]:
         """Whatever an order cannot have: it is said, and takes no time and no place."""
-        wrong = {
-            "collaborative": self.collaborative,
-            "together": self.together,
-            "location": self.location,
-            "duration": self.duration,
-            "may_stop": self.may_stop,
-            "parts": self.split,
-            "takes": self.takes,
-            "gives": self.gives,
-            "mounts": self.mounts,
-            "needs": self.needs,
-            "only_if": self.only_if,
-        }
-        named = [word for word, value in wrong.items() if value not in (None, False)]
+        fields = ((word, "split" if word == "parts" else word) for word in _OF_WORK)
+        named = [word for word, field in fields if getattr(self, field) not in (None, False)]
         if self.on_order and named:
             message = f"{self.name} is ordered by people: it has no {', no '.join(named)}"
             hint = f"keep on_order alone; what robots do then is another event: if {self.name} then … within 600"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Tuple
+from typing import Any
 
 from pursue_gen.language.statements.base import StatementKind
 from pursue_gen.language.template import FILLINGS, Filling, Template
@@ -25,19 +25,17 @@ class _WrittenOut(StatementKind):
 class Group(_WrittenOut):
     """Things of one kind. Statements that name it are written out before they are read."""
 
-    own_words: ClassVar[Tuple[Word, ...]] = (
-        Word("group", "Several of one kind under one name: places, agents, events, states or things.", True),
-    )
-    template: ClassVar[Template] = Template(
+    own_words = (Word("group", "Several of one kind under one name: places, agents, events, states or things.", True),)
+    template = Template(
         'group {name="rooms"}: {members=room1, room2}', members=FILLINGS["POIs"]._replace(behind=("group",))
     )
-    forms: ClassVar[Tuple[Form, ...]] = (Form("things under one name", 'group "{=rooms}": {POI}'),)
+    forms = (Form("things under one name", 'group "{=rooms}": {POI}'),)
 
 
 class ForEach(_WrittenOut):
     """A statement for each member of a group: what is read are the statements that `language.groups` makes of it."""
 
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    own_words = (
         Word("for", "A statement for each of a group; a rule for each robot or agent; a way or place for these only."),
         Word("except", "A way, or a place, for all but these agents.", True),
         Word("each", "Every member of a group; in a rule every robot or agent, and each has its own turn.", True),
@@ -47,7 +45,7 @@ class ForEach(_WrittenOut):
         Word("none", "Not one member: none of a group.", True),
         Word("robots", "All agents that are controllable and not human: a group that needs no declaration.", True),
     )
-    template: ClassVar[Template] = Template(
+    template = Template(
         'for each {ranges:ranges=r in rooms}: {statement:statement=event "call" of r}',
         ranges=Filling(
             '(TWO (ROBOTS WORD "," WORD | WORD "," WORD "in" ref) | _range ("," _range)*)',
@@ -56,10 +54,10 @@ class ForEach(_WrittenOut):
         ),
         statement=Filling("_each", _nothing),
     )
-    note: ClassVar[str] = (
+    note = (
         "or any other statement; for each two a, b in rooms: every pair; for each robot r, for each two robots a, b"
     )
-    forms: ClassVar[Tuple[Form, ...]] = (
+    forms = (
         Form("an event for each of a group", 'for each {=r} in {group}: event "{=call}" of {=r} location {=r}'),
         Form("an objective for each two robots", "for each two robots {=x}, {=y}: objective: {=x} never_with {=y}"),
     )

@@ -20,7 +20,7 @@ class Headed(StatementKind):
 
     head: ClassVar[Word]
     """The word."""
-    colon: ClassVar[str] = ":"
+    colon = ":"
     """The colon behind it; "": there is none."""
     kinds: ClassVar[Mapping[str, Type[Any]]]
     """These kinds, classes of `Written`, by their rules in the grammar."""
@@ -73,26 +73,24 @@ class Headed(StatementKind):
 class Batteries(Headed):
     """How long a robot lasts until it has to charge."""
 
-    listed_in: ClassVar[str] = "batteries"
-    kinds: ClassVar[Mapping[str, Type[Any]]] = {"endurance": Endurance, "levels": Battery}
-    colon: ClassVar[str] = ""
+    listed_in = "batteries"
+    kinds = {"endurance": Endurance, "levels": Battery}
+    colon = ""
     head = Word(
         "battery",
         "The battery of a robot: how long it lasts, or what it holds and uses, and where it is charged. It never runs "
         "empty.",
         True,
     )
-    second: ClassVar[Tuple[str, ...]] = ("lasts", "capacity")
+    second = ("lasts", "capacity")
 
 
 class Assume(Headed):
     """What agents that are not controlled do, or do not do."""
 
-    listed_in: ClassVar[str] = "assumptions"
+    listed_in = "assumptions"
     kinds = ASSUMPTIONS
-    head = Word(
-        "assume", "What an agent that is not controlled is assumed to do, or not to do. A mission watches it."
-    )
+    head = Word("assume", "What an agent that is not controlled is assumed to do, or not to do. A mission watches it.")
 
 
 class Objective(Headed):
@@ -107,6 +105,6 @@ class Objective(Headed):
 class ReachObjective(Headed):
     """What is reached once."""
 
-    among: ClassVar[str] = "OBJECTIVE"
-    kinds: ClassVar[Mapping[str, Type[Any]]] = {"reach": Reach}
+    among = "OBJECTIVE"
+    kinds = {"reach": Reach}
     head = Word("reach_objective", "What is to be achieved once.")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, ClassVar, Iterator, Optional, Tuple
+from typing import Callable, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed
 from pursue_gen.language.numbers import Number, Window, window_of
@@ -13,7 +13,7 @@ from pursue_gen.language.statements.base import Labelled, check_window
 from pursue_gen.language.statements.poi import POSES
 from pursue_gen.language.template import Template
 from pursue_gen.language.times import window_text, written_time
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
@@ -36,27 +36,23 @@ class Lift(Labelled):
     pose: Optional[Pose] = None
     cabins: Tuple[Spot, ...] = ()
 
-    listed_in: ClassVar[str] = "lifts"
-    symbol: ClassVar[str] = "Interface"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    listed_in = "lifts"
+    symbol = "Interface"
+    own_words = (
         Word("lift", "A lift that robots call by themselves when they set off by it.", True),
         Word("comes", "How long after it was called the lift is open there, at most: comes within 40.", True),
     )
-    template: ClassVar[Template] = Template(
+    template = Template(
         'lift {name="lift1"} [label {label:name}] at {floors:POIs=a, b} comes within {comes_within:time=40} '
         "takes {earliest,latest:window=10 to 20} [{pose,cabins:poses}]",
         poses=POSES,
     )
-    note: ClassVar[str] = "the places before its door, from the lowest up; ways go by it: connect a and b … by lift1"
-    forms: ClassVar[Tuple[Form, ...]] = (
-        Form("a lift", 'lift "{=lift1}" at {POI}, {POI} comes within {=40} takes {=10} to {=20}'),
-    )
-    numbers: ClassVar[Numbers] = {
-        "within": "A way by it takes up to {} longer, as whoever sets off may have to wait for it.".format
-    }
-    declares: ClassVar[str] = "lift"
-    described: ClassVar[str] = "a lift"
-    aside: ClassVar[Tuple[str, ...]] = ("pose", "cabins")
+    note = "the places before its door, from the lowest up; ways go by it: connect a and b … by lift1"
+    forms = (Form("a lift", 'lift "{=lift1}" at {POI}, {POI} comes within {=40} takes {=10} to {=20}'),)
+    numbers = {"within": "A way by it takes up to {} longer, as whoever sets off may have to wait for it.".format}
+    declares = "lift"
+    described = "a lift"
+    aside = ("pose", "cabins")
 
     @property
     def ride(self) -> Window:

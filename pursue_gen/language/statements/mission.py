@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Iterator, Optional, Tuple
+from typing import Iterator, Optional
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.statements.base import StatementKind
 from pursue_gen.language.template import Template
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
@@ -24,24 +24,22 @@ class MissionEnd(StatementKind):
     answered: bool = False
     span: Span = NOWHERE
 
-    listed_in: ClassVar[str] = "ends"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    listed_in = "ends"
+    own_words = (
         Word("mission", "The mission from its start to its end.", True),
         Word("ends", "When a mission ends in which nothing is to be reached: all was kept, and robots stay.", True),
         Word("when", "At such a moment, and not before.", True),
         Word("is", "As in all is answered: nothing that has to be answered waits for it.", True),
         Word("answered", "Nothing that has to be answered waits for it.", True),
     )
-    template: ClassVar[Template] = Template("mission ends [after {after:time=480}] [when all is answered]")
-    note: ClassVar[str] = "or: mission ends when all is answered, or both"
-    numbers: ClassVar[Numbers] = {
-        "after": "The mission ends {} of time after the start, as soon as what is due then is answered.".format,
-    }
-    forms: ClassVar[Tuple[Form, ...]] = (
+    template = Template("mission ends [after {after:time=480}] [when all is answered]")
+    note = "or: mission ends when all is answered, or both"
+    numbers = {"after": "The mission ends {} of time after the start, as soon as what is due then is answered.".format}
+    forms = (
         Form("a mission that ends after a time", "mission ends after {=480}"),
         Form("a mission that ends when all is answered", "mission ends when all is answered"),
     )
-    among: ClassVar[str] = "OBJECTIVE"
+    among = "OBJECTIVE"
 
     @property
     def sentence(self) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, ClassVar, Tuple
+from typing import Any, Tuple
 
 from pursue_gen.diagnostics import error
 from pursue_gen.language.objectives import StatedObjective
@@ -11,7 +11,7 @@ from pursue_gen.language.statements.base import StatementKind
 from pursue_gen.language.statements.headed import Objective, ReachObjective
 from pursue_gen.language.template import Filling, Template
 from pursue_gen.language.tree_reader import TreeReader
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 _BEHIND = {kind.rule(): kind for kind in (Objective, ReachObjective)}
 """What stands behind the number, by its rule in the grammar."""
@@ -25,28 +25,28 @@ def _objectives(reader: TreeReader, tree: Any) -> Tuple[StatedObjective, ...]:
 class Optional(StatementKind):
     """An objective with a number: 1 for what is to be kept longest."""
 
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    own_words = (
         Word(
             "optional",
             "An objective that is given up where it cannot be promised with the rest; 1 is kept longest.",
             True,
         ),
     )
-    template: ClassVar[Template] = Template(
+    template = Template(
         "optional {rank:count=1} {objectives:objectives=reach_objective: do e1}",
         objectives=Filling(f"({' | '.join(_BEHIND)})", _objectives),
     )
-    note: ClassVar[str] = "or: optional 1 objective: avoid e; 1 is kept longest"
-    forms: ClassVar[Tuple[Form, ...]] = (
+    note = "or: optional 1 objective: avoid e; 1 is kept longest"
+    forms = (
         Form("achieve something if it can be promised", "optional {=1} reach_objective: do {event}"),
         Form("what always holds if it can be promised", "optional {=1} objective: avoid {event}"),
     )
-    numbers: ClassVar[Numbers] = {
+    numbers = {
         "optional": lambda *_: (
             "The first one to be given up is the one with the greatest number; those with one number go together."
         ),
     }
-    among: ClassVar[str] = "OBJECTIVE"
+    among = "OBJECTIVE"
 
     @classmethod
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Tuple[StatedObjective, ...]:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable, ClassVar, Iterator, Optional, Tuple
+from typing import Callable, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span
 from pursue_gen.language.poses import Pose, Spot, pose_text, read_poses
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import ForSome, Labelled
 from pursue_gen.language.template import Filling, Template
-from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Word
 
 
@@ -19,11 +18,7 @@ def _poses_text(pose: Optional[Pose], spots: Tuple[Spot, ...]) -> str:
     return f"//{own}" + "".join(f" {spot.robot.name} {pose_text(spot.pose)}" for spot in spots)
 
 
-def _read_poses(reader: TreeReader, comment: Any) -> Tuple[Optional[Pose], Tuple[Spot, ...]]:
-    return read_poses(str(comment), reader.at(comment), reader.findings)
-
-
-POSES = Filling("POSE", _read_poses, _poses_text)
+POSES = Filling("POSE", lambda reader, it: read_poses(str(it), reader.at(it), reader.findings), _poses_text)
 """The pose of a place in a comment behind it, and those behind names."""
 
 
@@ -43,29 +38,29 @@ class Poi(Labelled, ForSome):
     only_for: Tuple[Ref, ...] = ()
     not_for: Tuple[Ref, ...] = ()
 
-    listed_in: ClassVar[str] = "pois"
-    symbol: ClassVar[str] = "Constant"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    listed_in = "pois"
+    symbol = "Constant"
+    own_words = (
         Word("poi", "A place where something can happen, or where ways meet."),
         Word("label", "What people read in place of the name: any text without double quotes.", True),
     )
-    template: ClassVar[Template] = Template(
+    template = Template(
         'poi {name="a"} [label {label:name}] ' + ForSome.for_whom + " [{pose,spots:poses}]",
         poses=POSES,
     )
-    note: ClassVar[str] = (
+    note = (
         'or with what people read: poi "a" label "security door"; for agv, cart or except gerda behind it: '
         "only these, or all but these, may be there"
     )
-    forms: ClassVar[Tuple[Form, ...]] = (
+    forms = (
         Form("a place", 'poi "{=room}"'),
         Form("a place where somebody never is", 'poi "{=room}" except {agent}'),
     )
-    declares: ClassVar[str] = "POI"
-    described: ClassVar[str] = "a place"
-    aside: ClassVar[Tuple[str, ...]] = ("pose", "spots")
-    shortest: ClassVar[str] = 'poi "{name}"'
-    parts: ClassVar[Tuple[str, ...]] = template.begins
+    declares = "POI"
+    described = "a place"
+    aside = ("pose", "spots")
+    shortest = 'poi "{name}"'
+    parts = template.begins
 
     def names(self) -> Iterator[Tuple[str, Ref]]:
         return (("agent", ref) for ref in (*self.only_for, *self.not_for, *(spot.robot for spot in self.spots)))

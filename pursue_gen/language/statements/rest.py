@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Iterator, Tuple
+from typing import Iterator
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.statements.base import StatementKind
 from pursue_gen.language.template import Template
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
@@ -19,13 +19,13 @@ class Rest(StatementKind):
     time: Number
     span: Span = NOWHERE
 
-    listed_in: ClassVar[str] = "rests"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    listed_in = "rests"
+    own_words = (
         Word("rest", "How long every agent rests between two steps at a place, in place of one unit of time.", True),
     )
-    template: ClassVar[Template] = Template("rest {time:time=0.1}")
-    forms: ClassVar[Tuple[Form, ...]] = (Form("how long everybody rests between two steps", "rest {=0.1}"),)
-    numbers: ClassVar[Numbers] = {"rest": "It sets off, or does something, {} after its last step, or later.".format}
+    template = Template("rest {time:time=0.1}")
+    forms = (Form("how long everybody rests between two steps", "rest {=0.1}"),)
+    numbers = {"rest": "It sets off, or does something, {} after its last step, or later.".format}
 
     def check(self) -> Iterator[Diagnostic]:
         if self.time <= 0:

@@ -21,9 +21,9 @@ class _Two:
     second: RuleBody
     span: Span = NOWHERE
     word: ClassVar[str]
-    between: ClassVar[str] = ""
+    between = ""
     """The same for people; "": it is that word."""
-    behind: ClassVar[str] = ""
+    behind = ""
     """What people read behind the two."""
 
     @property
@@ -114,30 +114,30 @@ class Rule(StatementKind):
     span: Span = NOWHERE
     each: str = ""
 
-    listed_in: ClassVar[str] = "rules"
-    symbol: ClassVar[str] = "Struct"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    listed_in = "rules"
+    symbol = "Struct"
+    own_words = (
         Word("rule", "An order of events, round after round: each may happen only when it is its turn."),
         Word("before", "First this, then that, and then the first again.", may_break=True),
         Word("or", "Either of the two, round after round; in a condition: at least one holds.", may_break=True),
     )
-    template: ClassVar[Template] = Template(
+    template = Template(
         'rule {name="order"} [for each {each:who}]: {body:body=first before second}',
         who=Filling("(ROBOT | AGENT)", lambda _, token: str(token)),
         body=Filling("_body", _body, _body_text, "event", ("rule", "robot", "agent", "before", "or", "and"), _RULES),
     )
-    note: ClassVar[str] = (
+    note = (
         'or: first or second, first and second; brackets where the words differ; or: rule "order" for each robot: …'
     )
-    forms: ClassVar[Tuple[Form, ...]] = (
+    forms = (
         Form("events in turn", 'rule "{=order}": {event} before {event}'),
         Form("three events in turn", 'rule "{=order}": {event} before {event} before {event}'),
         Form("events in turn, for each robot", 'rule "{=order}" for each robot: {event} before {event}'),
         Form("either of two events", 'rule "{=choice}": {event} or {event}'),
         Form("two events in any order, then a third", 'rule "{=all}": ({event} and {event}) before {event}'),
     )
-    declares: ClassVar[str] = "rule"
-    described: ClassVar[str] = "a rule, round after round"
+    declares = "rule"
+    described = "a rule, round after round"
 
     @property
     def events(self) -> Tuple[Ref, ...]:

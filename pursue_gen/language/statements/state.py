@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable, ClassVar, Iterator, Optional, Tuple
+from typing import Any, Callable, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.refs import Ref
@@ -50,9 +50,9 @@ class State(StatementKind):
     shown_by: Tuple[Ref, ...] = ()
     seen_at: Optional[Ref] = None
 
-    listed_in: ClassVar[str] = "states"
-    symbol: ClassVar[str] = "Boolean"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    listed_in = "states"
+    symbol = "Boolean"
+    own_words = (
         Word("state", "Something that is true or false, and that events change."),
         Word("initially", "The value at the start: true, false or unknown."),
         Word("true", "It holds."),
@@ -63,21 +63,21 @@ class State(StatementKind):
         Word("shown_by", "When one of these events has happened, it is known what the state is.", True, may_break=True),
         Word("seen_at", "When a robot comes to this place, it is known what the state is.", True),
     )
-    template: ClassVar[Template] = Template(
+    template = Template(
         'state {name="open"}: initially {initially:known=false} [seen_at {seen_at:POI}]'
         " [, {true_if,false_if,shown_by:sets=true_if e1, e2 false_if e3}]",
         known=Filling("(TRUE | FALSE | UNKNOWN)", _read_known, _known_text),
         sets=Filling("sets", _read_sets, _sets_text, "event", _LISTS, _SETS),
     )
-    note: ClassVar[str] = "or: initially unknown, shown_by e1; or: initially unknown seen_at a"
-    forms: ClassVar[Tuple[Form, ...]] = (
+    note = "or: initially unknown, shown_by e1; or: initially unknown seen_at a"
+    forms = (
         Form("true or false, changed by events", 'state "{=open}": initially false, true_if {event} false_if {event}'),
         Form("not known until an event shows it", 'state "{=empty}": initially unknown, shown_by {event}'),
         Form("not known until a robot sees it", 'state "{=empty}": initially unknown seen_at {POI}'),
     )
-    declares: ClassVar[str] = "state"
-    described: ClassVar[str] = "a state, {0.first_words} at the start"
-    shortest: ClassVar[str] = 'state "{name}": initially false'
+    declares = "state"
+    described = "a state, {0.first_words} at the start"
+    shortest = 'state "{name}": initially false'
 
     @property
     def is_found_out(self) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Optional, Tuple
+from typing import Optional
 
 from pursue_gen.diagnostics import NOWHERE, Span
 from pursue_gen.language.statements.base import Labelled
@@ -21,13 +21,13 @@ class Thing(Labelled):
     span: Span = NOWHERE
     label: Optional[str] = None
 
-    listed_in: ClassVar[str] = "things"
-    symbol: ClassVar[str] = "Object"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    listed_in = "things"
+    symbol = "Object"
+    own_words = (
         Word("thing", "What agents carry, from an event that takes it to one that gives it; or a tool.", True),
     )
-    template: ClassVar[Template] = Template('thing {name="box"} [label {label:name}]')
-    forms: ClassVar[Tuple[Form, ...]] = (Form("something that robots carry", 'thing "{=box}"'),)
-    declares: ClassVar[str] = "thing"
-    described: ClassVar[str] = "a thing that is carried"
-    shortest: ClassVar[str] = 'thing "{name}"'
+    template = Template('thing {name="box"} [label {label:name}]')
+    forms = (Form("something that robots carry", 'thing "{=box}"'),)
+    declares = "thing"
+    described = "a thing that is carried"
+    shortest = 'thing "{name}"'

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Iterator, Optional, Tuple
+from typing import Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.numbers import Number, Window, window_of
@@ -26,8 +26,8 @@ class Travel(StatementKind):
     latest: Optional[Number] = None
     span: Span = NOWHERE
 
-    listed_in: ClassVar[str] = "travels"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    listed_in = "travels"
+    own_words = (
         Word(
             "travel",
             "How long an agent takes from a place to the next one, in place of what distance and mobile say.",
@@ -35,11 +35,9 @@ class Travel(StatementKind):
         ),
         Word("from", "Where the agent sets off."),
     )
-    template: ClassVar[Template] = Template(
-        'travel {agent:"agent"=bot} from {a:POI=a} to {b:POI=b} takes {earliest,latest:window=5 to 8}'
-    )
-    forms: ClassVar[Tuple[Form, ...]] = (Form("an agent's own time for a way", template.to_fill_in),)
-    second: ClassVar[Tuple[str, ...]] = ("from",)
+    template = Template('travel {agent:"agent"=bot} from {a:POI=a} to {b:POI=b} takes {earliest,latest:window=5 to 8}')
+    forms = (Form("an agent's own time for a way", template.to_fill_in),)
+    second = ("from",)
 
     @property
     def way(self) -> Tuple[str, str]:

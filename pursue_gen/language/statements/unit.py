@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Iterator, Optional, Tuple
+from typing import Iterator, Optional, Tuple
 
 from lark import Token
 
@@ -42,26 +42,22 @@ class Unit(StatementKind):
     written: str
     span: Span = NOWHERE
 
-    listed_in: ClassVar[str] = "units"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    listed_in = "units"
+    own_words = (
         Word("unit", "What one unit of time is; with it, times may have units: 30 s, 2 min, 8 h.", True),
         Word("second", "One unit of time is one second.", True),
         Word("minute", "One unit of time is one minute.", True),
         Word("hour", "One unit of time is one hour.", True),
     )
-    template: ClassVar[Template] = Template(
+    template = Template(
         "unit {seconds,written:length=second}",
         length=Filling("(SECOND | MINUTE | HOUR | NUMBER)", _read, lambda _, written: str(written)),
     )
-    note: ClassVar[str] = "or: unit minute, unit hour, unit 10 s"
-    forms: ClassVar[Tuple[Form, ...]] = (
+    note = "or: unit minute, unit hour, unit 10 s"
+    forms = (
         Form("what one unit of time is", "unit second"),
         Form("what one unit of time is, by its length", "unit {=10} s"),
     )
-
-    @classmethod
-    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Unit:
-        return cls(**cls.template.read(reader, children), **at)
 
     def check(self) -> Iterator[Diagnostic]:
         if not _LEAST <= self.seconds <= _MOST:

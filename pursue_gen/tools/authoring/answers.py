@@ -45,27 +45,16 @@ def names(taken: Collection[str], least: int, most: int) -> Callable[[str], Tupl
     return accept
 
 
-def a_number(least: int, most: int, why: str = "") -> Callable[[str], int]:
-    """A whole number; `why` tells where its limits come from."""
+def a_number(least: int, most: int, why: str = "", or_nothing: bool = False) -> Callable[[str], int]:
+    """A whole number; `why` tells where its limits come from; with `or_nothing` also 0 for nothing."""
 
     def accept(answer: str) -> int:
-        if not (answer.isascii() and answer.isdigit() and len(answer) < 9 and least <= int(answer) <= most):
-            raise ValueError(f"expected a whole number from {least} to {most}, not {answer!r}" + (why and f": {why}"))
-        return int(answer)
-
-    return accept
-
-
-def nothing_or_a_number(least: int, most: int, why: str = "") -> Callable[[str], int]:
-    """0 for nothing, or a whole number within limits; `why` as in `a_number`."""
-
-    def accept(answer: str) -> int:
-        if answer == "0":
+        if or_nothing and answer == "0":
             return 0
-        try:
-            return a_number(least, most, why)(answer)
-        except ValueError as problem:
-            raise ValueError(str(problem).replace("expected", "expected 0, or", 1)) from None
+        if not (answer.isascii() and answer.isdigit() and len(answer) < 9 and least <= int(answer) <= most):
+            expected = f"expected {'0, or ' * or_nothing}a whole number from {least} to {most}"
+            raise ValueError(f"{expected}, not {answer!r}" + (why and f": {why}"))
+        return int(answer)
 
     return accept
 

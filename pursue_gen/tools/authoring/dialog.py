@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import abc
 from dataclasses import replace
-from typing import Any, Callable, List, Optional, Tuple, TypeVar
+from typing import Any, Callable, List, Optional, TextIO, Tuple, TypeVar
 
-from pursue_gen.diagnostics import usage_error
+from pursue_gen.diagnostics import PursueError, usage_error
 from pursue_gen.tools.authoring import answers
 from pursue_gen.tools.authoring.goals import GOALS, Goal
 from pursue_gen.tools.authoring.requirements import (
@@ -25,21 +24,55 @@ Answer = TypeVar("Answer")
 
 _PLACES = ("desk", "shelf", "window")
 _EVENTS = ("fetch", "sort", "clean", "fill", "count", "paint", "weigh", "label", "pack")
+_PATIENCE = 20  # bad answers in a row: then it is no person who answers
+LONGEST_LINE = 10_000
+"""Letters of what a person types before Enter."""
 
 
-class Dialog(abc.ABC):
-    """Asks a person, on a terminal or elsewhere."""
+class Dialog:
+    """Writes to one stream and reads from another; with `quiet` it takes every suggestion instead."""
 
-    @abc.abstractmethod
+    def __init__(self, source: TextIO, screen: TextIO, quiet: bool = False) -> None:
+        self._source, self._screen, self._quiet = source, screen, quiet
+
     def show(self, text: str) -> None:
         """Shows a line."""
+        if not self._quiet:
+            self._screen.write(f"{text}\n")
 
-    @abc.abstractmethod
     def ask(self, question: str, suggestion: str, accept: Callable[[str], Answer]) -> Answer:
         """The answer, as `accept` reads it; it raises ValueError for a bad one, which is asked for again.
 
         Raises PursueError (exit status 2) where there is none to be had.
         """
+        if self._quiet:
+            return accept(suggestion)
+        for _ in range(_PATIENCE):
+            self._screen.write(f"{question} [{suggestion or 'nobody'}] ")
+            self._screen.flush()
+            try:
+                return accept(self._line() or suggestion)
+            except ValueError as problem:
+                self.show(f"  {problem}")
+        raise _ended(f"{_PATIENCE} answers in a row could not be used")
+
+    def _line(self) -> str:
+        try:
+            line = self._source.readline(LONGEST_LINE)
+        except UnicodeDecodeError:
+            raise _ended("what was typed is not text in UTF-8") from None
+        if len(line) == LONGEST_LINE:
+            raise _ended("what was typed is no answer: its line does not end")
+        if not line:
+            self._screen.write("\n")
+            raise _ended("the answers ended before the questions did")
+        if not self._source.isatty():  # a terminal has shown the answer already
+            self.show(line.strip())
+        return line.strip()
+
+
+def _ended(message: str) -> PursueError:
+    return usage_error(message, "nothing was written; answer all questions, or take the suggestions with --yes")
 
 
 def ask_requirements(dialog: Dialog, kind: Optional[str], places: Optional[str], robots: Optional[int]) -> Requirements:

@@ -6,17 +6,7 @@ from dataclasses import dataclass
 from typing import Callable, Iterable, List, Mapping, Optional, Tuple
 
 from pursue_gen.tools.authoring import answers
-from pursue_gen.tools.authoring.requirements import (
-    BETWEEN,
-    MOST_TIME,
-    Requirements,
-    Robot,
-    deadline,
-    shortest_every,
-    shortest_within,
-    travel_time,
-    unused,
-)
+from pursue_gen.tools.authoring.requirements import BETWEEN, MOST_TIME, Requirements, Robot, travel_time, unused
 
 Places = Tuple[str, ...]
 Lines = Callable[[Requirements], List[str]]
@@ -63,9 +53,9 @@ def _once(given: Requirements) -> List[str]:
 
 
 def _by_when(given: Requirements) -> Question:
-    least, why = shortest_within(given), "in less time the robots may not be done"
+    least, why = given.shortest_within, "in less time the robots may not be done"
     question = f"By when, in units of time from the start? (0: at any time; at least {least})"
-    return "within", question, "0", answers.nothing_or_a_number(least, MOST_TIME, why)
+    return "within", question, "0", answers.a_number(least, MOST_TIME, why, or_nothing=True)
 
 
 def _between_calls(given: Requirements) -> Question:
@@ -74,10 +64,9 @@ def _between_calls(given: Requirements) -> Question:
 
 
 def _answered(given: Requirements) -> List[str]:
-    time = deadline(given.distances, given.robots)
     return [
         "// What has to hold always. Try a shorter time: when it is too short, solve says so, and what would help.",
-        f"objective: if {given.event} then {given.tasks[-1].event} within {time}",
+        f"objective: if {given.event} then {given.tasks[-1].event} within {given.deadline}",
     ]
 
 
@@ -114,7 +103,7 @@ def _apart(given: Requirements) -> List[str]:
 
 
 def _how_often(given: Requirements) -> Question:
-    least = shortest_every(given.distances, given.robots)
+    least = given.shortest_every
     question = f"How long may a place be left alone, in units of time? (at least {least})"
     accept = answers.a_number(least, MOST_TIME, "the way to all places and back takes that long")
     return "every", question, str(least), accept

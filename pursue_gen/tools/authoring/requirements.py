@@ -68,30 +68,31 @@ class Requirements:
         """The tasks of the robots, each once."""
         return tuple(dict.fromkeys(robot.task for robot in self.robots if robot.task is not None))
 
+    @property
+    def shortest_within(self) -> int:
+        """Time units in which the robots can surely have done everything (kind reach): each goes all the way when it is
+        its turn."""
+        turns = [(robot.mobile, robot.task.duration if robot.task else 0) for robot in self.robots]
+        turns += [(self.robots[-1].mobile, 0)] if self.event else []
+        return sum(travel_time(self.distances, mobile) + duration + BETWEEN for mobile, duration in turns)
 
-def shortest_within(given: Requirements) -> int:
-    """Time units in which the robots can surely have done everything (kind reach): each goes all the way when it is
-    its turn."""
-    turns = [(robot.mobile, robot.task.duration if robot.task else 0) for robot in given.robots]
-    turns += [(given.robots[-1].mobile, 0)] if given.event else []
-    return sum(travel_time(given.distances, mobile) + duration + BETWEEN for mobile, duration in turns)
+    @property
+    def shortest_every(self) -> int:
+        """Time units after which the fastest robot is surely in the same place again if it walks to and fro."""
+        return 2 * travel_time(self.distances, min(robot.mobile or 1 for robot in self.robots))
 
-
-def shortest_every(distances: Iterable[int], robots: Tuple[Robot, ...]) -> int:
-    """Time units after which the fastest robot is surely in the same place again if it walks to and fro."""
-    return 2 * travel_time(distances, min(robot.mobile or 1 for robot in robots))
+    @property
+    def deadline(self) -> int:
+        """Time units in which the robots can answer a call, at any moment: all go to their places first, and stay
+        there."""
+        slowest = max(robot.mobile or 0 for robot in self.robots)
+        at_work = sum((robot.task.duration if robot.task else 0) + BETWEEN for robot in self.robots)
+        return travel_time(self.distances, slowest) + at_work
 
 
 def travel_time(distances: Iterable[int], mobile: Optional[int]) -> int:
     """Time units that the way through all places takes; none where it stands."""
     return sum(distance * mobile + BETWEEN for distance in distances) if mobile else 0
-
-
-def deadline(distances: Iterable[int], robots: Tuple[Robot, ...]) -> int:
-    """Time units in which the robots can answer a call, at any moment: all go to their places first, and stay there."""
-    slowest = max(robot.mobile or 0 for robot in robots)
-    at_work = sum((robot.task.duration if robot.task else 0) + BETWEEN for robot in robots)
-    return travel_time(distances, slowest) + at_work
 
 
 def unused(name: str, taken: Iterable[str]) -> str:

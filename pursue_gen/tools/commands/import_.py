@@ -48,8 +48,7 @@ def import_(
     from pursue_gen.tools.importing.building import read_building
     from pursue_gen.tools.importing.plan import floor_plan
     from pursue_gen.tools.importing.scenario_text import chosen, scenario_text
-    from pursue_gen.tools.importing.waypoint_text import robots_named, waypoints_text
-    from pursue_gen.tools.importing.waypoints import is_building, read_waypoints
+    from pursue_gen.tools.importing.waypoints import is_building, read_waypoints, robots_named, waypoints_text
 
     file = output or Path(f"{fitting(source.name.split('.')[0])}.pur")
     check_new(file, force)

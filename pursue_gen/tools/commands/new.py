@@ -35,14 +35,13 @@ def new(
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.files import write_texts
     from pursue_gen.language.checks import checked
-    from pursue_gen.tools.authoring.dialog import ask_requirements
+    from pursue_gen.tools.authoring.dialog import Dialog, ask_requirements
     from pursue_gen.tools.authoring.first_scenario import place_for, scenario_text, tried
-    from pursue_gen.tools.commands.dialog import StreamDialog
 
     file = place_for(name, output)
     if file.exists() and not force:
         raise usage_error(f"{file} is there already", "choose another name, or replace it with --force")
-    dialog = StreamDialog(sys.stdin, sys.stderr, quiet=yes)
+    dialog = Dialog(sys.stdin, sys.stderr, quiet=yes)
     dialog.show("A few questions; Enter takes what stands in brackets, Ctrl-C leaves without writing anything.")
     text = scenario_text(ask_requirements(dialog, kind, places, robots), str(file))
     scenario = checked(text, str(file))

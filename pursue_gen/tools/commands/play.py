@@ -11,7 +11,7 @@ import typer
 from pursue_gen.cli.console import guarded
 from pursue_gen.cli.options import REQUEST, SCENARIO, choice, with_request
 from pursue_gen.diagnostics import usage_error
-from pursue_gen.tools.commands.dialog import LONGEST_LINE
+from pursue_gen.tools.authoring.dialog import LONGEST_LINE
 
 if TYPE_CHECKING:
     from pursue_gen.solving.request import SolveRequest

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Any, List, Mapping
+from functools import partial
+from typing import Any, List, Mapping, Sequence
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language.labels import why_no_label
@@ -62,26 +63,15 @@ def number_of(values: Values, field: str) -> str:
     return value
 
 
-def _measured(values: Values, field: str, *kinds: Units) -> str:
+def _measured(kinds: Sequence[Units], values: Values, field: str) -> str:
     """A number as it is written in a scenario, with a unit of one of these kinds or without."""
     value = " ".join(text_of(values, field).split())
     known = has_unit(value) and any(kind.read(value).value is not None for kind in kinds)
     return value if known else number_of(values, field)
 
 
-def measure_of(values: Values, field: str) -> str:
-    """A number as it is written in a scenario, with its unit or without."""
-    return _measured(values, field, TIMES, LENGTHS)
-
-
-def time_of(values: Values, field: str) -> str:
-    """A time as it is written in a scenario, with its unit or without."""
-    return _measured(values, field, TIMES)
-
-
-def length_of(values: Values, field: str) -> str:
-    """A length as it is written in a scenario, with its unit or without."""
-    return _measured(values, field, LENGTHS)
+measure_of, time_of, length_of = (partial(_measured, kinds) for kinds in ((TIMES, LENGTHS), (TIMES,), (LENGTHS,)))
+"""A number, a time or a length as it is written in a scenario, with its unit or without."""
 
 
 def window_of(values: Values, field: str) -> str:

@@ -12,9 +12,7 @@ from pathlib import Path
 from typing import Any, Callable, Dict, Optional
 
 from pursue_gen.tools.draw.fields import refused
-from pursue_gen.tools.draw.play_work import play
-from pursue_gen.tools.draw.solve_work import UNDECIDED, Work, solve
-from pursue_gen.tools.draw.survey_work import SurveyWork, survey
+from pursue_gen.tools.draw.work import UNDECIDED, SurveyWork, Work, play, solve, survey
 from pursue_gen.workspace.robot_size import NOTHING_TOLD, Told
 
 RUNNING, ENDED, CANCELLED, NONE = "running", "ended", "cancelled", "none"
@@ -102,26 +100,23 @@ class Jobs:
         self, target: Callable[[Any, Connection], None], given: Work, report: Optional[str] = None
     ) -> Dict[str, Any]:
         with self._lock:
-            self._launch(target, given)
+            self.end()
+            self._number += 1
+            self._state, self._start = {"state": RUNNING}, time.monotonic()
+            context = multiprocessing.get_context("spawn")
+            resource_tracker.ensure_running()  # it would lift the block of Ctrl-C below
+            self._pipe, theirs = context.Pipe()
+            self._process = context.Process(target=target, args=(given, theirs), daemon=True)
+            # Ctrl-C is for the server; the process has that blocked from its birth.
+            mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            try:
+                self._process.start()
+            finally:
+                signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+            theirs.close()
+            threading.Thread(target=self._receive, args=(self._number, self._pipe, self._process), daemon=True).start()
             self._report = self._report if report is None else report
         return self.state()
-
-    def _launch(self, target: Callable[[Any, Connection], None], given: Work) -> None:
-        self.end()
-        self._number += 1
-        self._state, self._start = {"state": RUNNING}, time.monotonic()
-        context = multiprocessing.get_context("spawn")
-        resource_tracker.ensure_running()  # it would lift the block of Ctrl-C below
-        self._pipe, theirs = context.Pipe()
-        self._process = context.Process(target=target, args=(given, theirs), daemon=True)
-        # Ctrl-C is for the server; the process has that blocked from its birth.
-        mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-        try:
-            self._process.start()
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-        theirs.close()
-        threading.Thread(target=self._receive, args=(self._number, self._pipe, self._process), daemon=True).start()
 
     def _receive(self, number: int, pipe: Connection, process: Any) -> None:
         """Takes what the process sends, as long as its job is the present one."""

@@ -10,11 +10,10 @@ from itertools import count
 from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, PursueError, error
-from pursue_gen.language.draft import Draft
+from pursue_gen.language.draft import Draft, rename
 from pursue_gen.language.formatter import format_text, formatted
 from pursue_gen.language.kinds import DECLARED, RESERVED, STATEMENTS
 from pursue_gen.language.names import KINDS
-from pursue_gen.language.navigation import rename
 from pursue_gen.language.occurrences import GROUP
 from pursue_gen.language.poses import read_poses
 from pursue_gen.language.rewriting import parts_in, parts_of
@@ -26,8 +25,7 @@ from pursue_gen.language.word import HOLE, Form
 from pursue_gen.tools.draw import fields
 from pursue_gen.tools.draw.fields import Values, refused
 from pursue_gen.tools.draw.made import check_place, names, not_there
-from pursue_gen.tools.draw.places import with_all_positions
-from pursue_gen.tools.draw.poses import with_position, with_spot
+from pursue_gen.tools.draw.places import with_all_positions, with_position, with_spot
 from pursue_gen.tools.draw.statement_edits import added, restated, with_part, without, without_remark
 from pursue_gen.tools.draw.ways import connect, second_way
 

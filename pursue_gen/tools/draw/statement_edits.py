@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import List, Optional, Tuple
 
@@ -13,7 +14,7 @@ from pursue_gen.language.syntax import Statement
 
 def words_behind(statement: Statement, kind: str) -> str:
     """What stands behind the word that begins a part, without comments; "" where the part is not there."""
-    return " ".join(parts_of(statement).get(kind, ())[1:]).replace(" ,", ",")
+    return re.sub(r"(?<=\() | (?=[),])", "", " ".join(parts_of(statement).get(kind, ())[1:]))
 
 
 def names_behind(statement: Statement, kind: str) -> List[str]:

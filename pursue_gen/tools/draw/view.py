@@ -8,27 +8,23 @@ from pursue_gen.diagnostics import Diagnostic, Severity, Span, as_json, in_order
 from pursue_gen.drawing.ground import Ground
 from pursue_gen.drawing.layout import drawable
 from pursue_gen.drawing.look import agent_looks, mark
-from pursue_gen.language.conditions import Condition, condition_text
+from pursue_gen.language.document import Document
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.kinds import STATEMENTS
 from pursue_gen.language.lengths import unit_of_distance
 from pursue_gen.language.names import KINDS
-from pursue_gen.language.numbers import Number
 from pursue_gen.language.occurrences import GROUP
 from pursue_gen.language.rewriting import parts_in, parts_of
-from pursue_gen.language.scenario import Connection, Poi
+from pursue_gen.language.scenario import Agent, Connection, Event, Poi
 from pursue_gen.language.sentences import end_words, objective_words
 from pursue_gen.language.statements.agent import SIZE
-from pursue_gen.language.statements.event import counted_text
 from pursue_gen.language.syntax import Statement
-from pursue_gen.language.template import names_text
-from pursue_gen.language.times import unit_name, window_text, written_time
+from pursue_gen.language.times import unit_name
 from pursue_gen.language.tokens import bare
 from pursue_gen.language.word import HOLE
 from pursue_gen.solving.inputs import findings_of
 from pursue_gen.tools.draw.made import names, number_at
-from pursue_gen.tools.draw.places import positions
-from pursue_gen.tools.draw.poses import heading
+from pursue_gen.tools.draw.places import heading, positions
 from pursue_gen.tools.draw.statement_edits import names_behind, words_behind
 from pursue_gen.workspace.levels import Level
 from pursue_gen.workspace.map_check import but_for_ways, check_spots
@@ -36,7 +32,13 @@ from pursue_gen.workspace.robot_size import NOTHING_TOLD, Told, sizes_of
 from pursue_gen.workspace.spots import SPOT_DISTANCE
 
 _MOST_FINDINGS = 200
-_MOVES = ("takes", "gives", "mounts", "needs")
+_OF_AGENTS = ("mobile", "speed", *SIZE, "carries", "has", "location")
+_OF_EVENTS = ("location", "duration", "takes", "gives", "mounts", "needs", "only_if")
+"""What stands behind the words that these fields are called like."""
+_TICKS = ("collaborative", "together", "may_stop")
+"""What is so of an event, or not."""
+
+Part = Union[Poi, Connection, Agent, Event]
 
 
 def view(
@@ -125,18 +127,21 @@ def _made(document: Draft, span: Span) -> Dict[str, Any]:
     return {**_placed(document, number_at(document, span)), "made": span.member}
 
 
-def _condition(condition: Optional[Condition]) -> str:
-    return "" if condition is None else condition_text(condition)
-
-
-def _whole(document: Draft, kind: str) -> List[Tuple[int, Statement]]:
-    """The statements of a kind whose parts can be shown: those that name something begin with its name."""
+def _whole(document: Draft, kind: str, read: Sequence[Part]) -> List[Tuple[Statement, Dict[str, Any]]]:
+    """The statements of a kind whose parts can be shown, with their lines: those that name something begin with its
+    name. Behind them what of `read` comes of statements that are for each of a group, written out."""
     found = []
     for number, statement in enumerate(document.statements):
         is_first = statement.name is None or _is_first(document, number)
         if statement.kind == kind and statement.tokens[0].type == kind and is_first:
-            found.append((number, statement))
-    return found
+            found.append((statement, _placed(document, number)))
+    made = [part for part in read if part.span.member]
+    return [*found, *zip(_written_out(made), (_made(document, part.span) for part in made))]
+
+
+def _written_out(parts: Sequence[Part]) -> Tuple[Statement, ...]:
+    """A statement for each part."""
+    return Document("\n".join(part.text for part in parts)).statements
 
 
 def _is_first(document: Draft, number: int) -> bool:
@@ -156,7 +161,7 @@ def _places(document: Draft) -> List[Dict[str, Any]]:
         place = {"name": poi.name, "label": poi.label or "", "x": pose.x, "y": pose.y, "yaw": heading(pose)}
         spots = [{"robot": spot.robot.name, "x": spot.pose.x, "y": spot.pose.y} for spot in poi.spots]
         origin = _made(document, poi.span) if here is None else _placed(document, here.statement)
-        whom = _whom_made(poi) if here is None else _whom(document.statements[here.statement])
+        whom = _whom(_written_out([poi])[0] if here is None else document.statements[here.statement])
         found.append({**place, "given": poi.pose is not None, "spots": spots, **whom, **origin})
     return found
 
@@ -166,89 +171,48 @@ def _whom(statement: Statement) -> Dict[str, str]:
     return {"only_for": words_behind(statement, "FOR"), "not_for": words_behind(statement, "EXCEPT")}
 
 
-def _whom_made(part: Union[Poi, Connection]) -> Dict[str, str]:
-    """The same of what is for each of a group."""
-    return {"only_for": names_text(part.only_for), "not_for": names_text(part.not_for)}
-
-
 def _ways(document: Draft, known: Collection[str]) -> List[Dict[str, Any]]:
     """The ways between places that are shown."""
     found = []
-    for number, statement in _whole(document, "CONNECT"):
+    for statement, placed in _whole(document, "CONNECT", document.scenario.connections):
         a, b = words_behind(statement, "CONNECT"), words_behind(statement, "AND")
         if a in known and b in known and a != b:
-            way = {"a": a, "b": b, "distance": words_behind(statement, "DISTANCE")}
-            way["only_if"] = words_behind(statement, "ONLY_IF")
-            way.update(_whom(statement))
-            found.append({**way, "one_way": statement.first("ONE_WAY") is not None, **_placed(document, number)})
-    for one in document.scenario.connections:
-        if one.span.member and {one.a, one.b} <= {*known} and one.a != one.b:
-            way = {"a": one.a, "b": one.b, "distance": written_time(one.distance), "only_if": _condition(one.only_if)}
-            way.update(_whom_made(one))
-            found.append({**way, "one_way": one.one_way, **_made(document, one.span)})
+            texts = {key: words_behind(statement, key.upper()) for key in ("distance", "only_if")}
+            one_way = statement.first("ONE_WAY") is not None
+            found.append({"a": a, "b": b, **texts, **_whom(statement), "one_way": one_way, **placed})
     return found
 
 
 def _agents(document: Draft) -> List[Dict[str, Any]]:
-    statements = [(k, one) for k, one in _whole(document, "AGENT") if one.name is not None]
+    statements = _whole(document, "AGENT", document.scenario.agents)
     known = {one.name: one for one in reversed(document.scenario.agents)}
-    made = [one for one in document.scenario.agents if one.span.member]
-    looks = agent_looks([*(bare(one.name) for _, one in statements), *(one.name for one in made)])
+    looks = agent_looks([bare(one.name) for one, _ in statements if one.name is not None])
     found = []
-    for number, one in statements:
+    for one, placed in statements:
+        if one.name is None:
+            continue
         name, parts = bare(one.name), parts_of(one)
         kind = "free" if "CONTROLLABLE" not in parts else "person" if "HUMAN" in parts else "robot"
         agent = {"name": name, "label": words_behind(one, "LABEL")[1:-1], "kind": kind}
-        agent.update(mobile=words_behind(one, "MOBILE"), speed=words_behind(one, "SPEED"))
-        agent.update({key: words_behind(one, key.upper()) for key in (*SIZE, "carries", "has", "location")})
-        agent["mark"] = mark(looks[name], 0, 0, 6.0)
+        agent.update({key: words_behind(one, key.upper()) for key in _OF_AGENTS})
         lists = {key: names_behind(one, key.upper()) for key in ("can_do", "reacts_to")}
         if name in known:  # groups are lists of their members
             lists = {key: [ref.name for ref in getattr(known[name], key)] for key in lists}
-        found.append({**agent, **lists, **_placed(document, number)})
-    for each in made:
-        kind = "free" if not each.controllable else "person" if each.human else "robot"
-        agent = {"name": each.name, "label": each.label or "", "kind": kind, "location": each.starts_text}
-        agent.update(mobile="" if each.speed else str(each.mobile or ""), speed=str(each.speed or ""))
-        agent.update({word: _length(getattr(each, word)) for word in SIZE})
-        agent.update(carries=str(each.carries or ""), has=names_text(each.has))
-        agent.update(mark=mark(looks[each.name], 0, 0, 6.0))
-        lists = {key: [ref.name for ref in getattr(each, key)] for key in ("can_do", "reacts_to")}
-        found.append({**agent, **lists, **_made(document, each.span)})
+        found.append({**agent, "mark": mark(looks[name], 0, 0, 6.0), **lists, **placed})
     return found
-
-
-def _length(number: Optional[Number]) -> str:
-    """A length as it is written; "" where there is none."""
-    return "" if number is None else written_time(number)
-
-
-_TICKS = ("collaborative", "together", "may_stop")
-"""What is so of an event, or not."""
 
 
 def _events(document: Draft) -> List[Dict[str, Any]]:
     found = []
-    for number, one in _whole(document, "EVENT"):
+    for one, placed in _whole(document, "EVENT", document.scenario.events):
         if one.name is None:
             continue
         parts = parts_of(one)
         event = {"name": bare(one.name), "label": words_behind(one, "LABEL")[1:-1]}
-        texts = {key: words_behind(one, key.upper()) for key in ("location", "duration", *_MOVES, "only_if")}
-        at_most = words_behind(one, "AT_MOST").partition(" ")[0]
-        ticks = {key: key.upper() in parts for key in _TICKS}
-        event["parts"] = words_behind(one, "IN").partition(" ")[0]
-        found.append({**event, **texts, "at_most": at_most, **ticks, **_placed(document, number)})
-    for each in document.scenario.events:
-        if each.span.member:
-            event = {"name": each.name, "label": each.label or "", "at_most": str(each.at_most or "")}
-            event.update(location=each.location.name if each.location else "", only_if=_condition(each.only_if))
-            event["parts"] = str(each.split or "")
-            event["duration"] = "" if each.duration is None else window_text(each.duration, each.latest)
-            counts = {"takes": each.taken, "gives": each.given}
-            event.update({key: counted_text(getattr(each, key), counts.get(key, 1)) for key in _MOVES})
-            ticks = {key: getattr(each, key) for key in _TICKS}
-            found.append({**event, **ticks, **_made(document, each.span)})
+        texts = {key: words_behind(one, key.upper()) for key in _OF_EVENTS}
+        numbers = {"parts": words_behind(one, "IN"), "at_most": words_behind(one, "AT_MOST")}
+        texts.update({key: words.partition(" ")[0] for key, words in numbers.items()})
+        found.append({**event, **texts, **{key: key.upper() in parts for key in _TICKS}, **placed})
     return found
 
 

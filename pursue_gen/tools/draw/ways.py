@@ -12,8 +12,7 @@ from pursue_gen.language.times import written_time
 from pursue_gen.tools.draw import fields
 from pursue_gen.tools.draw.fields import Values, refused
 from pursue_gen.tools.draw.made import check_place, names, not_there, number_at
-from pursue_gen.tools.draw.places import lengths_per_metre, positions
-from pursue_gen.tools.draw.poses import metres
+from pursue_gen.tools.draw.places import lengths_per_metre, metres, positions
 from pursue_gen.tools.draw.statement_edits import added, names_behind, with_part, words_behind
 
 

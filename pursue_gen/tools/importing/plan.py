@@ -71,8 +71,8 @@ class Track:
 
     def turned(self) -> Track:
         """The same from its end to its start."""
-        ends = Track(self.end, self.start, self.metres, self.back, self.there)
-        return replace(ends, doors=self.doors[::-1], parts=self.parts[::-1], mutex=self.mutex)
+        doors, parts = self.doors[::-1], self.parts[::-1]
+        return Track(self.end, self.start, self.metres, self.back, self.there, doors, parts, self.mutex)
 
 
 @dataclass(frozen=True)
@@ -279,8 +279,7 @@ def _one_of(one: Track, other: Track, node: Node) -> Optional[Track]:
     if (one.there, one.back, one.mutex) != (other.there, other.back, other.mutex) or one.start == other.end:
         return None
     doors = one.doors + tuple(door for door in other.doors if door not in one.doors)
-    whole = replace(one, end=other.end, metres=one.metres + other.metres, doors=doors)
-    return replace(whole, parts=one.parts + other.parts)
+    return replace(one, end=other.end, metres=one.metres + other.metres, doors=doors, parts=one.parts + other.parts)
 
 
 # Metres --------------------------------------------------------------------------------------------------------------

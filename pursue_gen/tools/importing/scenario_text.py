@@ -166,9 +166,8 @@ class _Writer:
         lines = []
         for stop in self._stops:
             name, title = self._places[stop.node], self._shown[stop.node]
-            label = f' label "{one_line(title)}"' if title != name else ""
             x, y, _ = self._before.get(stop.node, (stop.x, stop.y, 0.0))
-            lines.append(f'poi "{name}"{label} //[{_metres(x, y, stop.z)}, 0, 0, 0, 1]')
+            lines.append(f'poi "{name}"{label_text(title, name)} //[{_metres(x, y, stop.z)}, 0, 0, 0, 1]')
         return lines
 
     def _in_front(self, cabin: Node) -> Tuple[float, float, float]:
@@ -189,7 +188,6 @@ class _Writer:
         stops = {stop.node: stop for stop in self._stops}
         for lift, nodes in self._lifts.items():
             name, floors = self._called[lift], [self._places[node] for node in nodes]
-            label = f' label "{one_line(lift)}"' if lift != name else ""
             poses = [_metres(stops[node].x, stops[node].y, stops[node].z) for node in nodes]
             middle = [(stops[node].x, stops[node].y) for node in nodes]
             beside = [math.dist(each, middle[0]) > _STRAIGHT for each in middle]
@@ -197,7 +195,7 @@ class _Writer:
             called = ", ".join(f"{floor}: {one_line(node[0])}" for floor, node in zip(floors, nodes))
             lines += [
                 f"// For door_settings: {name}: {{adapter: rmf, name: {one_line(lift)}, floors: {{{called}}}}}",
-                f'lift "{name}"{label} at {", ".join(floors)} comes within {_COMES} takes {_RIDES}'
+                f'lift "{name}"{label_text(lift, name)} at {", ".join(floors)} comes within {_COMES} takes {_RIDES}'
                 f" //[{poses[0]}, 0, 0, 0, 1]{more}",
             ]
         return lines
@@ -205,11 +203,10 @@ class _Writer:
     def _door_lines(self) -> List[str]:
         lines = []
         for door, title, name in self._doors.values():
-            label = f' label "{one_line(title)}"' if title != name else ""
             turned = math.sin(door.yaw / 2), math.cos(door.yaw / 2)
             turn = ", ".join(f"{round(value, 4) + 0.0:g}" for value in turned)
             pose = _metres(door.x, door.y, door.z)
-            lines.append(f'door "{name}"{label} opens within {_OPENS} //[{pose}, 0, 0, {turn}]')
+            lines.append(f'door "{name}"{label_text(title, name)} opens within {_OPENS} //[{pose}, 0, 0, {turn}]')
         return lines
 
     def _group_lines(self) -> List[str]:
@@ -295,7 +292,7 @@ class _Writer:
             able = [name for name, node in self._tasks.items() if node in self._reached[robot.name]]
             doing = f" can_do {', '.join(able)}" if able else ""
             name, place, speed = self._agents[robot.name], self._places[robot.node], self._speeds[robot.name]
-            label = f' label "{one_line(robot.name)}"' if robot.name != name else ""
+            label = label_text(robot.name, name)
             line = f'agent "{name}"{label} controllable speed {speed:g} location {place}{doing}'
             lines.append(f"{line} // {one_line(robot.type)}" if robot.type else line)
         return lines
@@ -328,6 +325,11 @@ def told_apart(titles: Mapping[Key, str]) -> Iterator[Tuple[Key, str]]:
     for node, title in titles.items():
         seen[title] += 1
         yield node, title if seen[title] == 1 else f"{title} {seen[title]}"
+
+
+def label_text(title: str, name: str) -> str:
+    """The label of what people call by a title that is not its name."""
+    return f' label "{one_line(title)}"' if title != name else ""
 
 
 def _metres(*values: float) -> str:

@@ -179,7 +179,8 @@ def _names_of(document: Draft, place: _Place, kind: str, repeated: bool) -> Iter
     used = {str(token) for token, is_name in zip(place.behind, are_names(place.behind)) if is_name}
     known = document.declared[kind]
     fitting = [name for name in known if repeated or name not in used]
-    if kind == "event" and place.behind[0].type == "AGENT" and _last_word(place) == "REACTS_TO":
+    last = next((token.type for token in reversed(place.behind) if token.type in KEYWORDS), "")
+    if kind == "event" and place.behind[0].type == "AGENT" and last == "REACTS_TO":
         together = [name for name in fitting if document.statements[known[name].statement].first("COLLABORATIVE")]
         fitting = together or fitting
     for name in fitting:
@@ -205,10 +206,6 @@ def _robots(document: Draft, offset: int) -> Iterator[Completion]:
                     if agent.is_robot and agent.name not in used:
                         insert, span = f"{agent.name} [{pose}]", (before.start(1), after.end())
                         yield Completion(agent.name, insert, "WORD", "name", *span, "its pose here", of="agent")
-
-
-def _last_word(place: _Place) -> str:
-    return next((token.type for token in reversed(place.behind) if token.type in KEYWORDS), "")
 
 
 def _words(place: _Place, expected: FrozenSet[str], grouped: bool) -> Iterator[Completion]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Dict, Iterable, List, Optional, Sequence
+from typing import Dict, Iterable, List, Optional
 
 from lsprotocol import types as lsp
 
@@ -11,9 +11,7 @@ from pursue_gen.language.document import Edit
 from pursue_gen.language.kinds import KEYWORDS, STATEMENTS
 from pursue_gen.language.occurrences import Occurrence
 from pursue_gen.tools.lsp.completion import Completion
-from pursue_gen.tools.lsp.fixes import Fix
 from pursue_gen.tools.lsp.open_document import OpenDocument
-from pursue_gen.tools.lsp.outline import Fold, Symbol
 
 _COSTS = "discrete states of the game of this objective alone, which those of others multiply"
 """What a number of states behind an objective means."""
@@ -30,13 +28,13 @@ _SYMBOLS = {kind.declares: kind.symbol for kind in STATEMENTS.values() if kind.d
 
 def range_of(document: OpenDocument, start: int, end: int) -> lsp.Range:
     """text[start:end] as the editor counts."""
-    first, last = document.positions.position(start), document.positions.position(end)
+    first, last = document.position(start), document.position(end)
     return lsp.Range(lsp.Position(*first), lsp.Position(*last))
 
 
 def offset_of(document: OpenDocument, position: lsp.Position) -> int:
     """The offset that an editor's position means."""
-    return document.positions.offset(position.line, position.character)
+    return document.offset(position.line, position.character)
 
 
 def diagnostic(
@@ -89,38 +87,9 @@ def locations(document: OpenDocument, uri: str, places: Iterable[Occurrence]) ->
     return [lsp.Location(uri, range_of(document, place.start, place.end)) for place in places]
 
 
-def highlights(document: OpenDocument, places: Iterable[Occurrence]) -> List[lsp.DocumentHighlight]:
-    """Where names stand, declarations marked as writing."""
-    kinds = lsp.DocumentHighlightKind
-    return [
-        lsp.DocumentHighlight(range_of(document, o.start, o.end), kinds.Write if o.declares else kinds.Read)
-        for o in places
-    ]
-
-
 def text_edits(document: OpenDocument, edits: Iterable[Edit]) -> List[lsp.TextEdit]:
     """Edits of the text."""
     return [lsp.TextEdit(range_of(document, edit.start, edit.end), edit.text) for edit in edits]
-
-
-def document_symbols(document: OpenDocument, symbols: Iterable[Symbol]) -> List[lsp.DocumentSymbol]:
-    """The outline."""
-    return [
-        lsp.DocumentSymbol(
-            name=symbol.name,
-            kind=getattr(lsp.SymbolKind, STATEMENTS[symbol.kind].symbol),
-            range=range_of(document, symbol.start, symbol.end),
-            selection_range=range_of(document, symbol.name_start, symbol.name_end),
-            detail=symbol.detail or None,
-        )
-        for symbol in symbols
-    ]
-
-
-def folding_ranges(folds: Iterable[Fold]) -> List[lsp.FoldingRange]:
-    """What can be folded away."""
-    kinds = lsp.FoldingRangeKind
-    return [lsp.FoldingRange(f.first, f.last, kind=kinds.Comment if f.comment else kinds.Region) for f in folds]
 
 
 def inlay_hints(document: OpenDocument, start: int, end: int) -> List[lsp.InlayHint]:
@@ -129,19 +98,5 @@ def inlay_hints(document: OpenDocument, start: int, end: int) -> List[lsp.InlayH
     for size in document.sizes:
         said.setdefault(document.lines.of_span(size.span)[1], []).append(size.in_words())
     ends = ((at, " or ".join(dict.fromkeys(some)) + " each" * (len(some) > 1)) for at, some in said.items())
-    places = ((lsp.Position(*document.positions.position(at)), words) for at, words in ends if start <= at <= end)
+    places = ((lsp.Position(*document.position(at)), words) for at, words in ends if start <= at <= end)
     return [lsp.InlayHint(place, words, tooltip=_COSTS, padding_left=True) for place, words in places]
-
-
-def code_actions(document: OpenDocument, uri: str, found: Sequence[Fix], pages: Optional[str]) -> List[lsp.CodeAction]:
-    """Quick fixes, each with the finding that it is about."""
-    return [
-        lsp.CodeAction(
-            title=fix.title,
-            kind=lsp.CodeActionKind.QuickFix,
-            diagnostics=[diagnostic(document, uri, fix.finding, pages, related=True)],
-            is_preferred=fix.preferred,
-            edit=lsp.WorkspaceEdit(changes={uri: text_edits(document, fix.edits)}),
-        )
-        for fix in found
-    ]

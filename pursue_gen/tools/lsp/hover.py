@@ -159,9 +159,10 @@ def _event(scenario: Scenario, event: Event) -> List[str]:
     if event.at_most is not None:
         lines.append(f"- happens at most {event.at_most} times")
     lines += [f"- {in_markdown(scenario, event.load_words)}"] if event.load_words else []
-    lines.append("- done by " + (", ".join(a.name for a in scenario.agents if _in(event.name, a.can_do)) or "nobody"))
+    lines.append("- done by " + (", ".join(agent.name for agent in scenario.doers(event.name)) or "nobody"))
     if event.collaborative:
-        partners = ", ".join(a.name for a in scenario.agents if _in(event.name, a.reacts_to))
+        reacts = {agent.name: {ref.name for ref in agent.reacts_to} for agent in scenario.agents}
+        partners = ", ".join(name for name, some in reacts.items() if event.name in some)
         lines.append(f"- takes two at one place; the partner is {partners or 'nobody'}")
         if event.duration is not None:
             both = "both are busy until it ends" if event.together else "the partner may leave as soon as it has begun"
@@ -266,10 +267,6 @@ def _battery(scenario: Scenario, part: Statement) -> str:
             count = len(levels(scenario, battery))
             return f"The battery can be at {count} levels; the game has up to {count} times as many states."
     return ""
-
-
-def _in(name: str, refs: Tuple[Ref, ...]) -> bool:
-    return any(ref.name == name for ref in refs)
 
 
 def _if_any(words: str, names: List[str]) -> List[str]:

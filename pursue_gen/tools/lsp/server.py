@@ -6,6 +6,7 @@ import logging
 import os
 import sys
 import threading
+import time
 from contextlib import suppress
 from typing import Any, Callable, Dict, List, Optional
 from urllib.parse import unquote, urlsplit
@@ -16,23 +17,25 @@ from pygls.exceptions import JsonRpcException
 from pursue_gen import __version__
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.document import Edit
+from pursue_gen.language.draft import definition, rename, same_name
 from pursue_gen.language.formatter import formatted
+from pursue_gen.language.kinds import STATEMENTS
 from pursue_gen.language.lines import plain
-from pursue_gen.language.navigation import definition, rename, same_name
 from pursue_gen.tools.lsp import convert
-from pursue_gen.tools.lsp.checker import Checker
 from pursue_gen.tools.lsp.completion import complete
 from pursue_gen.tools.lsp.fixes import fixes
 from pursue_gen.tools.lsp.framing import BoundedInput
 from pursue_gen.tools.lsp.hover import hover
-from pursue_gen.tools.lsp.map_preview import picture
-from pursue_gen.tools.lsp.open_document import OpenDocument
+from pursue_gen.tools.lsp.open_document import OpenDocument, picture
 from pursue_gen.tools.lsp.outline import folds, symbols
 
 MAP = "pursue/map"
 """Our own request, {"uri": …}: the map as {"svg": …}, or why there is none as {"message": …}."""
 
 _REQUEST_FAILED = -32803
+
+PAUSE = 0.1
+"""Seconds between a change of a text and its check: one types faster than one reads."""
 
 
 def serve(pages: Optional[str] = None) -> bool:
@@ -131,7 +134,10 @@ class Session:
 
     def highlight(self, document: OpenDocument, params: lsp.DocumentHighlightParams) -> List[lsp.DocumentHighlight]:
         """All places of the name at a position."""
-        return convert.highlights(document, same_name(document, convert.offset_of(document, params.position)))
+        kinds = lsp.DocumentHighlightKind
+        places = same_name(document, convert.offset_of(document, params.position))
+        spans = ((place, convert.range_of(document, place.start, place.end)) for place in places)
+        return [lsp.DocumentHighlight(span, kinds.Write if place.declares else kinds.Read) for place, span in spans]
 
     def prepare_rename(self, document: OpenDocument, params: lsp.PrepareRenameParams) -> Optional[lsp.Range]:
         """The range of the name that would be renamed."""
@@ -145,11 +151,22 @@ class Session:
 
     def outline(self, document: OpenDocument, _params: lsp.DocumentSymbolParams) -> List[lsp.DocumentSymbol]:
         """The declarations as an outline."""
-        return convert.document_symbols(document, symbols(document))
+        return [
+            lsp.DocumentSymbol(
+                name=symbol.name,
+                kind=getattr(lsp.SymbolKind, STATEMENTS[symbol.kind].symbol),
+                range=convert.range_of(document, symbol.start, symbol.end),
+                selection_range=convert.range_of(document, symbol.name_start, symbol.name_end),
+                detail=symbol.detail or None,
+            )
+            for symbol in symbols(document)
+        ]
 
     def fold(self, document: OpenDocument, _params: lsp.FoldingRangeParams) -> List[lsp.FoldingRange]:
         """The ranges that can be folded."""
-        return convert.folding_ranges(folds(document))
+        kinds = lsp.FoldingRangeKind
+        found = ((fold, kinds.Comment if fold.comment else kinds.Region) for fold in folds(document))
+        return [lsp.FoldingRange(fold.first, fold.last, kind=kind) for fold, kind in found]
 
     def count(self, document: OpenDocument, params: lsp.InlayHintParams) -> List[lsp.InlayHint]:
         """How many states the objectives in a range cost."""
@@ -171,7 +188,17 @@ class Session:
         if wanted is not None and not any(str(getattr(k, "value", k)) in ("", "quickfix") for k in wanted):
             return []
         start, end = (convert.offset_of(document, place) for place in (params.range.start, params.range.end))
-        return convert.code_actions(document, params.text_document.uri, fixes(document, start, end), self.pages)
+        uri = params.text_document.uri
+        return [
+            lsp.CodeAction(
+                title=fix.title,
+                kind=lsp.CodeActionKind.QuickFix,
+                diagnostics=[convert.diagnostic(document, uri, fix.finding, self.pages, related=True)],
+                is_preferred=fix.preferred,
+                edit=lsp.WorkspaceEdit(changes={uri: convert.text_edits(document, fix.edits)}),
+            )
+            for fix in fixes(document, start, end)
+        ]
 
     def draw(self, params: Any) -> Dict[str, str]:
         """The map as SVG, or the reason why there is none."""
@@ -265,3 +292,38 @@ def _as_dict(value: Any) -> Dict[str, Any]:
     elif not isinstance(value, dict) and hasattr(value, "__dict__"):
         value = vars(value)
     return dict(value) if isinstance(value, dict) else {}
+
+
+class Checker:
+    """A daemon thread that passes texts to `publish(uri, document)`, which checks them and sends the findings."""
+
+    def __init__(self, publish: Callable[[str, OpenDocument], None]) -> None:
+        self._publish = publish
+        self._waiting: Dict[str, OpenDocument] = {}
+        self._wake = threading.Condition()
+        threading.Thread(target=self._work, daemon=True).start()
+
+    def request(self, uri: str, document: OpenDocument) -> None:
+        """Queue a text for its check; it replaces an older version that still waits."""
+        with self._wake:
+            self._waiting[uri] = document
+            self._wake.notify()
+
+    def cancel(self, uri: str) -> None:
+        """Remove a text from the queue."""
+        with self._wake:
+            self._waiting.pop(uri, None)
+
+    def _work(self) -> None:
+        while True:
+            with self._wake:
+                while not self._waiting:
+                    self._wake.wait()
+            time.sleep(PAUSE)
+            with self._wake:
+                texts, self._waiting = self._waiting, {}
+            for uri, document in texts.items():
+                try:
+                    self._publish(uri, document)
+                except Exception:  # a text that cannot be checked must not end the thread
+                    continue

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from pursue_gen.language.formatter_files import layout_of, replace_text
+from pursue_gen.language.formatter import layout_of, replace_text
 
 from .commands import pursue
 

@@ -19,18 +19,10 @@ from pursue_gen.language.formatter import format_text
 from pursue_gen.language.scenario import Avoid, NeverWith, Patrol, Reach, Respond, Scenario
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import solve_scenario
-from pursue_gen.tools.authoring.dialog import ask_requirements
+from pursue_gen.tools.authoring.dialog import Dialog, ask_requirements
 from pursue_gen.tools.authoring.first_scenario import scenario_text
 from pursue_gen.tools.authoring.goals import GOALS
-from pursue_gen.tools.authoring.requirements import (
-    Requirements,
-    Robot,
-    Task,
-    deadline,
-    shortest_every,
-    shortest_within,
-)
-from pursue_gen.tools.commands.dialog import StreamDialog
+from pursue_gen.tools.authoring.requirements import Requirements, Robot, Task
 
 from .commands import pursue
 
@@ -46,8 +38,8 @@ def sound_and_won(text: str, file: str = "floor.pur") -> Scenario:
     return scenario
 
 
-def dialog(*lines: str) -> StreamDialog:
-    return StreamDialog(io.StringIO("".join(line + "\n" for line in lines)), io.StringIO())
+def dialog(*lines: str) -> Dialog:
+    return Dialog(io.StringIO("".join(line + "\n" for line in lines)), io.StringIO())
 
 
 # What it writes is won ------------------------------------------------------------------------------------------------
@@ -57,7 +49,7 @@ def dialog(*lines: str) -> StreamDialog:
 @pytest.mark.parametrize("robots", [1, 2, 3])
 @pytest.mark.parametrize("kind", list(GOALS))
 def test_every_combination_of_options_is_won(kind: str, robots: int, places: int) -> None:
-    quiet, row = StreamDialog(io.StringIO(), io.StringIO(), quiet=True), ",".join(ROW[:places])
+    quiet, row = Dialog(io.StringIO(), io.StringIO(), quiet=True), ",".join(ROW[:places])
     if places < GOALS[kind].fewest_places:
         with pytest.raises(PursueError) as caught:
             ask_requirements(quiet, kind, row, robots)
@@ -100,7 +92,7 @@ def test_the_deadline_can_be_kept(
     scenario = sound_and_won(scenario_text(required, "floor.pur"))
     (safety,) = scenario.safety
     assert isinstance(safety, Respond)
-    assert safety.deadline == deadline(distances, robots)
+    assert safety.deadline == required.deadline
 
 
 # The questions --------------------------------------------------------------------------------------------------------
@@ -120,7 +112,7 @@ ANSWERS: Dict[str, List[str]] = {
 def test_the_answers_are_in_the_scenario(kind: str) -> None:
     screen = io.StringIO()
     source = io.StringIO("".join(line + "\n" for line in ANSWERS[kind]))
-    found = ask_requirements(StreamDialog(source, screen), None, None, None)
+    found = ask_requirements(Dialog(source, screen), None, None, None)
     assert found.kind == kind
     assert source.read() == ""
     scenario = sound_and_won(scenario_text(found, "floor.pur"))
@@ -135,7 +127,7 @@ def test_the_answers_are_in_the_scenario(kind: str) -> None:
 
 def test_what_is_given_is_not_asked() -> None:
     screen = io.StringIO()
-    found = ask_requirements(StreamDialog(io.StringIO("\n" * 30), screen), "reach", "a,b", 2)
+    found = ask_requirements(Dialog(io.StringIO("\n" * 30), screen), "reach", "a,b", 2)
     assert (found.kind, found.places, len(found.robots)) == ("reach", ("a", "b"), 2)
     for question in ("What is the goal?", "What places", "Which robots"):
         assert question not in screen.getvalue()
@@ -152,7 +144,7 @@ def test_what_is_given_is_not_asked() -> None:
 def test_a_goal_is_asked_until_it_is_one(answer: str, expected: str) -> None:
     screen = io.StringIO()
     source = io.StringIO(f"{answer}\n" + "\n" * 30)
-    assert ask_requirements(StreamDialog(source, screen), None, None, None).kind == "reach"
+    assert ask_requirements(Dialog(source, screen), None, None, None).kind == "reach"
     assert expected in screen.getvalue()
     assert screen.getvalue().count("Number or word?") == (2 if expected else 1)
 
@@ -181,12 +173,12 @@ def test_a_goal_is_asked_until_it_is_one(answer: str, expected: str) -> None:
 )
 def test_a_bad_answer_is_reported_and_asked_again(question: str, answer: str, expected: str) -> None:
     usual = io.StringIO()
-    plain = ask_requirements(StreamDialog(io.StringIO("\n" * 30), usual), "reach", None, None)
+    plain = ask_requirements(Dialog(io.StringIO("\n" * 30), usual), "reach", None, None)
     asked = [line for line in usual.getvalue().split("\n") if "[" in line]
     place = next(number for number, line in enumerate(asked) if question in line)
     screen = io.StringIO()
     lines = [""] * place + [answer] + [""] * 30
-    assert ask_requirements(StreamDialog(io.StringIO("\n".join(lines)), screen), "reach", None, None) == plain
+    assert ask_requirements(Dialog(io.StringIO("\n".join(lines)), screen), "reach", None, None) == plain
     assert expected in screen.getvalue()
     assert screen.getvalue().count(asked[place].strip()) == usual.getvalue().count(asked[place].strip()) + 1
 
@@ -199,11 +191,11 @@ def test_a_bad_answer_is_reported_and_asked_again(question: str, answer: str, ex
     ],
 )
 def test_a_time_that_cannot_be_is_asked_again(kind: str, answers: List[str], expected: str) -> None:
-    quiet = StreamDialog(io.StringIO(), io.StringIO(), quiet=True)
+    quiet = Dialog(io.StringIO(), io.StringIO(), quiet=True)
     usual, screen = ask_requirements(quiet, kind, "a,b,c", 1), io.StringIO()
     before = {"respond": 8, "patrol": 3}[kind]
     lines = io.StringIO("\n".join([""] * before + answers))
-    found = ask_requirements(StreamDialog(lines, screen), kind, "a,b,c", 1)
+    found = ask_requirements(Dialog(lines, screen), kind, "a,b,c", 1)
     assert found == (replace(usual, waits=40) if kind == "respond" else usual) and usual.every in (0, 28)
     assert expected in screen.getvalue() and screen.getvalue().count("whole number from") == 2
 
@@ -216,7 +208,7 @@ def test_the_earliest_deadline_that_is_accepted_can_be_kept(
     places = ROW[: len(distances) + 1]
     robots = tuple(Robot(f"bot{k}", m, Task(f"work{k}", places[-1 - k], 2 * k)) for k, m in enumerate(mobile))
     given = Requirements("reach", places, distances, robots, other, None, "handOver" if other else "")
-    least = shortest_within(given)
+    least = given.shortest_within
     scenario = sound_and_won(scenario_text(replace(given, within=least), "floor.pur"))
     (reach,) = scenario.reach
     assert isinstance(reach, Reach) and reach.within == least
@@ -227,20 +219,19 @@ def test_the_shortest_patrol_that_is_accepted_can_be_walked(
     distances: Tuple[int, ...], mobile: Tuple[int, ...]
 ) -> None:
     places, robots = ROW[: len(distances) + 1], tuple(Robot(f"bot{k}", speed) for k, speed in enumerate(mobile))
-    every = shortest_every(distances, robots)
-    scenario = sound_and_won(
-        scenario_text(Requirements("patrol", places, distances, robots, every=every), "floor.pur")
-    )
+    given = Requirements("patrol", places, distances, robots)
+    every = given.shortest_every
+    scenario = sound_and_won(scenario_text(replace(given, every=every), "floor.pur"))
     assert {safety.every for safety in scenario.safety if isinstance(safety, Patrol)} == {every}
 
 
 def test_who_is_too_fast_to_be_caught_is_asked_again() -> None:
-    quiet = StreamDialog(io.StringIO(), io.StringIO(), quiet=True)
+    quiet = Dialog(io.StringIO(), io.StringIO(), quiet=True)
     usual = ask_requirements(quiet, "catch", "a,b", 1)
     least = GOALS["catch"].slow_enough(usual.places, usual.distances, usual.robots)
     screen = io.StringIO()
     answers = ["", "", "", "", str(least - 1), str(least), ""]
-    found = ask_requirements(StreamDialog(io.StringIO("\n".join(answers)), screen), "catch", "a,b", 1)
+    found = ask_requirements(Dialog(io.StringIO("\n".join(answers)), screen), "catch", "a,b", 1)
     assert found.mobile == least
     assert "could not be sure" in screen.getvalue()
 
@@ -252,7 +243,7 @@ def test_nobody_answers_so_often_wrongly() -> None:
 
 
 def test_suggested_names_are_new_ones() -> None:
-    quiet = StreamDialog(io.StringIO(), io.StringIO(), quiet=True)
+    quiet = Dialog(io.StringIO(), io.StringIO(), quiet=True)
     for kind in GOALS:
         row = "bot1,fetch,visitor,order,safe,lock,thief,bot1_2"
         found = ask_requirements(quiet, kind, row, 2)

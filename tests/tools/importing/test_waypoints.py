@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 
 from pursue_gen.language import parse
 from pursue_gen.language.checks import check
-from pursue_gen.tools.importing.waypoint_text import neighbours, waypoints_text
-from pursue_gen.tools.importing.waypoints import read_waypoints, yawed
+from pursue_gen.tools.importing.waypoints import neighbours, read_waypoints, waypoints_text, yawed
 from tests.cli.test_commands import pursue
 from tests.test_pages import ROOT
 

@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import check, parse
 from pursue_gen.language.document import edited
-from pursue_gen.language.draft import Draft
-from pursue_gen.language.navigation import definition, rename, same_name
+from pursue_gen.language.draft import Draft, definition, rename, same_name
 from pursue_gen.language.writer import _meaning
 from pursue_gen.tools.lsp.completion import complete
 from pursue_gen.tools.lsp.convert import inlay_hints

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pursue_gen.language.draft import Draft
-from pursue_gen.tools.lsp.map_preview import picture
+from pursue_gen.tools.lsp.open_document import picture
 
 
 def test_a_way_that_is_shorter_than_a_unit_is_shown_with_its_length() -> None:

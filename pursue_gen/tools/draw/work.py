@@ -1,4 +1,4 @@
-"""What the process beside the page does: solves a text, and sends the verdict, then a page about it."""
+"""What the process beside the page does: solves a text, plays it or measures its ways, and sends what comes of it."""
 
 from __future__ import annotations
 
@@ -10,32 +10,39 @@ import time
 from dataclasses import dataclass, field, replace
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
-from typing import Iterable, Iterator, List, Optional
+from typing import Any, Dict, Iterable, Iterator, List, Optional, Sequence
 
 from pursue_gen.diagnostics import Diagnostic, PursueError
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.drawing.floor_picture import read_floor
 from pursue_gen.drawing.ground import read_ground
 from pursue_gen.language.checks import checked
+from pursue_gen.language.formatter import format_text
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.sentences import condition_of_promise, end_words, objective_words, periods_found, promise_words
+from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.outcomes import INTERRUPTED, LimitHit, Lost
 from pursue_gen.solving.answers import answers
 from pursue_gen.solving.inputs import game_of, settled
 from pursue_gen.solving.optional import Promised, promised_of
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.request import SolveRequest
-from pursue_gen.solving.rules import IDEAL
+from pursue_gen.solving.rules import IDEAL, Rules
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import Limits, Progress
+from pursue_gen.tools.play.games import session_of
+from pursue_gen.tools.play.session import Session, answer, choices, opening
 from pursue_gen.tools.report.make import ReportOptions, lost_report, won_report
 from pursue_gen.tools.report.whole import report_page
 from pursue_gen.workspace.levels import Level
+from pursue_gen.workspace.map_check import read_placed
 from pursue_gen.workspace.map_spots import with_spots
 from pursue_gen.workspace.robot_size import Told, sizes_of
 from pursue_gen.workspace.spots import SPOT_DISTANCE
 
-WON, LOST, UNDECIDED, ERRORS = "won", "lost", "undecided", "errors"
+WON, LOST, UNDECIDED, ERRORS, SURVEYED = "won", "lost", "undecided", "errors", "surveyed"
+_NOT_HERE = ("save", "quit", "exit")
+"""Commands of `pursue-gen play` that the page has no use for."""
 _INTERVAL = 0.3
 """Seconds from one word on the progress to the next."""
 
@@ -146,3 +153,99 @@ def _promise(found: Promised) -> List[str]:
 def sentences(findings: Iterable[Diagnostic]) -> List[str]:
     """A sentence for each finding, with what to do."""
     return [f"{one.message} ({one.hint})" if one.hint else one.message for one in findings]
+
+
+# Play -----------------------------------------------------------------------------------------------------------------
+
+
+def play(given: Work, pipe: Connection) -> None:
+    """Sends {"game": …} for the beginning and after each line that comes; ends where nothing comes any more."""
+    with working(pipe):
+        session = _begun(given, pipe)
+        lines: Sequence[str] = opening(session)
+        for turn in range(1, 1_000_000):
+            pipe.send({"game": _shown(session, lines, turn)})
+            line = str(pipe.recv())
+            if line.split()[:1] and line.split()[0].lower() in _NOT_HERE:
+                lines = ("A game on the page is not saved; End the game ends it.",)
+            else:
+                reply = answer(session, line)
+                session, lines = reply.session, reply.lines
+
+
+def _begun(given: Work, pipe: Connection) -> Session:
+    progress = Progressing(pipe)
+    limits = Limits(given.seconds, given.memory)
+    request = SolveRequest(options=SolveOptions(limits=limits, progress=progress))
+    scenario = settled(checked(given.text, given.file), request, progress)
+    return session_of(scenario, Rules(), 1, limits, progress)
+
+
+def _shown(session: Session, lines: Sequence[str], turn: int) -> Dict[str, Any]:
+    """What the page shows: lines, what can be done, the place that each of these leads to ("": to none), and where
+    everybody is: [place], or [from, to] on a way."""
+    setup, play_ = session.setup, session.play
+    at: Dict[str, List[str]] = {}
+    for number, automaton in enumerate(setup.game.automata):
+        if automaton.name in setup.agents:
+            location = automaton.locations[play_.position.state.locations[number]]
+            here = Symbol.of(location)
+            if here.parts:  # else nobody has said yet where it starts
+                at[automaton.name] = list(here.parts if here.role is Role.WAY else here.parts[-1:])
+    said = [] if play_.over else choices(session)
+    found: Dict[str, Any] = {"turn": turn, "lines": list(lines), "choices": [list(one) for one in said]}
+    return {**found, "to": _destinations(session), "over": play_.over, "at": at}
+
+
+def _destinations(session: Session) -> List[str]:
+    """For each thing that can be done, the place to which somebody sets off with it; "" where nobody does."""
+    offers = () if session.play.over else session.game.offers(session.play)
+    targets = [Symbol.of(session.setup.game.origins[offer.move.edges[0]].target) for offer in offers]
+    return [target.parts[-1] if target.role is Role.WAY else "" for target in targets]
+
+
+# Survey ---------------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class SurveyWork(Work):
+    """A text whose ways are to be measured, on the map `floor`.
+
+    `radius`: that of all robots, in metres; None: as it is said or was told; `speed`: metres per second of all robots,
+    None: no travel times; `ways`: those that are missing are added.
+    """
+
+    radius: Optional[float] = None
+    speed: Optional[float] = None
+    ways: bool = False
+
+
+def survey(given: SurveyWork, pipe: Connection) -> None:
+    """Sends {"verdict": "surveyed", "lines": …, "surveyed": the text with what was measured, "paths": of the ways, with
+    their bends in metres}, or why not."""
+    with working(pipe):
+        pipe.send({"progress": "measuring"})
+        try:
+            assert given.floor is not None, "the page offers this with a map only"
+            pipe.send(_measured(given, given.floor))
+        except ImportError as problem:
+            what = f"this needs the Python packages numpy and scipy, which are not installed here ({problem})"
+            pipe.send({"verdict": ERRORS, "lines": [f"{what}: pip install 'pursue-gen[survey]'"]})
+
+
+def _measured(given: SurveyWork, floor: Path) -> Dict[str, Any]:
+    from pursue_gen.survey.copying import with_sizes
+    from pursue_gen.survey.make import Options, surveyed  # needs numpy and scipy
+    from pursue_gen.survey.survey_table import table
+    from pursue_gen.survey.times import Drive
+
+    scenario = read_placed(given.text, given.file)
+    scenario = read_placed(with_sizes(scenario, sizes_of(scenario, given.told)), given.file)
+    robots = [agent.name for agent in scenario.agents if agent.is_robot and agent.mobile is not None]
+    speeds = {} if given.speed is None else dict.fromkeys(robots, given.speed)
+    drive = Drive(speeds, float(scenario.unit or 1))
+    options = Options(sizes_of(scenario).with_radius(given.radius), ways=given.ways, drive=drive)
+    found = surveyed(scenario, (Level(read_ground(floor, whole=True), floor),), options)
+    lines = [*sentences(found.findings), *table(found)]
+    paths = [{"a": way.a, "b": way.b, "line": way.line} for way in found.ways if way.line]
+    return {"verdict": SURVEYED, "lines": lines, "surveyed": format_text(found.text, given.file), "paths": paths}
