@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from tests.stories import files, free_model, model, scenario, solved
+from tests.stories import files, free_model, missions, model, scenario, solved
 
-__all__ = ["files", "free_model", "model", "scenario", "solved"]
+__all__ = ["files", "free_model", "missions", "model", "scenario", "solved"]
 
 PLAYROOM = """\
 poi "room"

@@ -1,9 +1,9 @@
-"""What tests need of the text of a small scenario: strategy, workspace, model; each made once for each text."""
+"""What tests need of the text of a small scenario: strategy, workspace, stage, model; each made once for each text."""
 
 from __future__ import annotations
 
 import functools
-from typing import Dict
+from typing import Dict, List
 
 import yaml
 
@@ -12,6 +12,10 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.solution import Solution, solve_scenario
 from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tools.simulation.mission import simulate_mission
+from pursue_gen.tools.simulation.outcome import Outcome, Settings
+from pursue_gen.tools.simulation.runs import case_of
+from pursue_gen.tools.simulation.stage import Stage, stage_of
 from pursue_gen.workspace import Options, generate
 from pursue_gen.workspace.model_file import render
 from pursue_runtime.model import Model
@@ -45,6 +49,17 @@ def files(text: str) -> Dict[str, bytes]:
     """Its workspace."""
     won = solved(text)
     return generate(scenario(text), won.network, won.objective, won.strategy, Options(reaction=won.reaction))
+
+
+@functools.lru_cache(maxsize=None)
+def _stage(text: str) -> Stage:
+    return stage_of(scenario(text), solved(text), Options())
+
+
+def missions(text: str, number: int, settings: Settings) -> List[Outcome]:
+    """The outcomes of so many simulated missions, all on one stage."""
+    case, _ = case_of(scenario(text), solved(text), Options(), settings)
+    return [simulate_mission(_stage(text), case.settings, seed, case.worst_times()) for seed in range(number)]
 
 
 @functools.lru_cache(maxsize=None)

@@ -118,7 +118,7 @@ def facts(path: Path) -> Facts:
     return Facts(path.stem, scenario, found.scenario, states, found.solution, found.solution.guarantee)
 
 
-_WORK, _WORK_IF = 20_000_000, 1_000_000
+_WORK, _WORK_IF = 20_000_000, 100_000
 """The work for a game of several promises in one piece: about a second; and where nothing but the verdict is wanted, so
 that another way to it may be shorter. Measured on care_round, care_home."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import re
 from dataclasses import replace
@@ -251,12 +252,17 @@ SMALL = {
 }
 
 
+@functools.lru_cache(maxsize=None)
+def explained(name: str) -> Explanation:
+    text, rules = SMALL[name]
+    return explain(parse(text, "x.pur"), rules, Limits(PLENTY))
+
+
 @pytest.mark.parametrize("name", SMALL)
 def test_each_change_that_is_claimed_wins_and_the_next_smaller_one_does_not(name: str) -> None:
-    text, rules = SMALL[name]
-    explanation = explain(parse(text, "x.pur"), rules, Limits(PLENTY))
+    explanation = explained(name)
     assert explanation.changes and explanation.play and not explanation.undecided
-    check_claims(text, rules, explanation)
+    check_claims(*SMALL[name], explanation)
     assert json.loads(json.dumps(as_json(explanation)))["changes"][0]["sentence"] == explanation.changes[0].sentence
 
 
@@ -271,9 +277,7 @@ def test_each_change_that_is_claimed_wins_and_the_next_smaller_one_does_not(name
     ],
 )
 def test_what_more_has_to_be_assumed_of_others_is_a_statement(name: str, claim: str) -> None:
-    text, rules = SMALL[name]
-    changes = explain(parse(text, "x.pur"), rules, Limits(PLENTY)).changes
-    assert [change.sentence for change in changes if change.what == "assumption"] == [claim]
+    assert [change.sentence for change in explained(name).changes if change.what == "assumption"] == [claim]
 
 
 @pytest.mark.parametrize("name", ["EB1", "WC2a", "CT3a"])
@@ -292,8 +296,7 @@ def test_the_claims_about_the_published_scenarios_hold(reference_dir: Path, name
 
 
 def rendered(name: str) -> str:
-    text, rules = SMALL[name]
-    return render(explain(parse(text, "x.pur"), rules, Limits(PLENTY)))
+    return render(explained(name))
 
 
 def told(name: str) -> str:
@@ -339,7 +342,7 @@ def test_a_robot_that_can_do_nothing_alone_is_reported(reference_dir: Path) -> N
 
 
 def test_a_change_that_only_moves_the_problem_is_no_claim() -> None:
-    explanation = explain(parse(SMALL["deadline 3"][0], "x.pur"), DEFAULT, Limits(PLENTY))
+    explanation = explained("deadline 3")
     assert "desk and shelf at distance 1 instead of 2" in explanation.lost
     assert not any(change.what == "distance" for change in explanation.changes)
 
@@ -353,9 +356,9 @@ def test_without_a_budget_nothing_is_claimed() -> None:
 
 
 def test_the_ends_can_be_the_plans_or_the_reaction_shorter() -> None:
-    changes = explain(parse(SMALL["deadline 4"][0], "x.pur"), DEFAULT, Limits(PLENTY)).changes
+    changes = explained("deadline 4").changes
     assert ("ends", CONTROLLABLE) in {(change.what, change.after) for change in changes}
-    slow = explain(parse(SMALL["deadline 5, slow to react"][0], "x.pur"), Rules(reaction=Fraction(3)), Limits(PLENTY))
+    slow = explained("deadline 5, slow to react")
     (reaction,) = [change for change in slow.changes if change.what == "reaction"]
     assert Fraction(reaction.after) + Fraction(3, 10) == Fraction(reaction.next_lost)
 
@@ -389,12 +392,12 @@ def test_json_holds_the_explanation(tmp_path: Path) -> None:
 
 
 def test_small_numbers_come_first_and_what_no_robot_can_do_last() -> None:
-    changes = explain(parse(SMALL["slow"][0], "x.pur"), DEFAULT, Limits(PLENTY)).changes
+    changes = explained("slow").changes
     numbers = [change for change in changes if change.before.isdigit() and change.after.isdigit()]
     ratios = [max(int(c.before), int(c.after)) / min(int(c.before), int(c.after)) for c in numbers]
     assert len(numbers) > 1 and ratios == sorted(ratios)
     assert tuple(numbers) == changes[: len(numbers)]
-    mixed = explain(parse(SMALL["deadline 4"][0], "x.pur"), DEFAULT, Limits(PLENTY)).changes
+    mixed = explained("deadline 4").changes
     kinds = [change.what for change in mixed]
     assert kinds.index("deadline") < kinds.index("control") < kinds.index("ends")
 
@@ -427,7 +430,7 @@ def test_a_robot_may_begin_in_each_way_that_it_has() -> None:
 
 
 def test_json_holds_the_attempts() -> None:
-    found = as_json(explain(parse(SMALL["deadline 3"][0], "x.pur"), DEFAULT, Limits(PLENTY)))
+    found = as_json(explained("deadline 3"))
     why = "visitor does callBot at 1.1; no fetch within 3 of callBot (4.1)"
     assert json.loads(json.dumps(found))["attempts"] == [{"first": "the robots wait", "why": why}]
 
@@ -437,8 +440,7 @@ def test_json_holds_the_attempts() -> None:
 
 @pytest.mark.parametrize("name", ["haggler", "haggler, ideal"])
 def test_a_loss_by_actions_without_end_is_called_so(name: str) -> None:
-    text, rules = SMALL[name]
-    explanation = explain(parse(text, "x.pur"), rules, Limits(PLENTY))
+    explanation = explained(name)
     assert [(one.agent, one.events) for one in explanation.endless] == [("guest", ("shout", "hush"))]
     text = render(explanation)
     assert text.startswith("Only actions without end prevent it: on its ways guest may do shout and hush")
@@ -449,8 +451,7 @@ def test_a_loss_by_actions_without_end_is_called_so(name: str) -> None:
 
 @pytest.mark.parametrize("name", [name for name in SMALL if not name.startswith("haggler")])
 def test_a_loss_in_which_time_passes_is_not(name: str) -> None:
-    text, rules = SMALL[name]
-    explanation = explain(parse(text, "x.pur"), rules, Limits(PLENTY))
+    explanation = explained(name)
     assert explanation.endless == ()
     assert "without end" not in render(explanation)
 

@@ -115,7 +115,8 @@ def test_a_plan_may_have_the_times_of_the_scenario_or_those_of_its_file() -> Non
 def test_simulated_missions_keep_to_the_game() -> None:
     won = solved(WON)
     case, _ = case_of(parse(WON, "decimals.pur"), won, Options(), Settings("mixed"))
-    outcomes = [MissionRunner(case).run(seed) for seed in range(12)]
+    runner = MissionRunner(case)
+    outcomes = [runner.run(seed) for seed in range(12)]
     assert {outcome.end for outcome in outcomes} == {GOAL}, [outcome.reason for outcome in outcomes]
 
 

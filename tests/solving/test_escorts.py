@@ -13,9 +13,7 @@ from pursue_gen.solving.rules import Rules
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.tools.simulation.opponents import OPPONENTS
 from pursue_gen.tools.simulation.outcome import SAFE, Settings
-from pursue_gen.tools.simulation.runs import MissionRunner, case_of
-from pursue_gen.workspace import Options
-from tests.stories import scenario, solved
+from tests.stories import missions, scenario, solved
 
 ESCORT = (Path(__file__).resolve().parents[2] / "scenarios" / "museum" / "escort.pur").read_text()
 QUICK = ESCORT.replace("mobile 2", "mobile 1")
@@ -37,6 +35,5 @@ def test_a_later_escort_is_proposed_for_all_places_of_the_statement() -> None:
 @pytest.mark.parametrize("text", [ESCORT, ESCORT.replace("gallery, vault", "gallery, vault, shop")])
 @pytest.mark.parametrize("kind", sorted(OPPONENTS))
 def test_simulated_missions_keep_it(text: str, kind: str) -> None:
-    case, _ = case_of(scenario(text), solved(text), Options(), Settings(kind, until=150.0))
-    outcomes = [MissionRunner(case).run(seed) for seed in range(3)]
+    outcomes = missions(text, 3, Settings(kind, until=150.0))
     assert {outcome.end for outcome in outcomes} == {SAFE} and not any(each.problems for each in outcomes)

@@ -151,7 +151,8 @@ def test_the_period_of_a_patrol_where_robots_make_way_is_found() -> None:
 def test_missions_of_patrols_where_robots_make_way() -> None:
     scenario = parse(PATROL.replace("EVERY", "every 400"), "patrol.pur", "patrol")
     case = make_case(scenario, won(scenario.text), SolveRequest(), "random", (), None)[0]
-    missions = [simulate_mission(MissionRunner(case).stage, Settings("random", until=900), n) for n in range(1, 6)]
+    stage = MissionRunner(case).stage
+    missions = [simulate_mission(stage, Settings("random", until=900), number) for number in range(1, 6)]
     assert not [mission for mission in missions if mission.problems]
     assert {mission.end for mission in missions} == {"safe"}, missions
 

@@ -15,9 +15,7 @@ from pursue_gen.solving.rules import Rules
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.tools.simulation.opponents import OPPONENTS
 from pursue_gen.tools.simulation.outcome import GOAL, SAFE, Settings
-from pursue_gen.tools.simulation.runs import MissionRunner, case_of
-from pursue_gen.workspace import Options
-from tests.stories import scenario, solved
+from tests.stories import missions, scenario, solved
 
 GLUE = (Path(__file__).resolve().parents[2] / "scenarios" / "work_cell" / "glue.pur").read_text()
 PAUSE = "at_least 20 between glue and pack"
@@ -86,6 +84,5 @@ def test_it_is_given_up_where_it_is_optional() -> None:
 @pytest.mark.parametrize("story", ["glue", "inspection"])
 def test_simulated_missions_keep_it(story: str, kind: str) -> None:
     text = GLUE if story == "glue" else INSPECTION.format("look and look", 60)
-    case, _ = case_of(scenario(text), solved(text), Options(), Settings(kind, until=200.0))
-    outcomes = [MissionRunner(case).run(seed) for seed in range(4)]
+    outcomes = missions(text, 4, Settings(kind, until=200.0))
     assert {outcome.end for outcome in outcomes} <= {GOAL, SAFE} and not any(each.problems for each in outcomes)

@@ -18,13 +18,11 @@ from pursue_gen.solving.rules import Rules
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.tools.simulation.opponents import OPPONENTS
 from pursue_gen.tools.simulation.outcome import SAFE, Settings
-from pursue_gen.tools.simulation.runs import MissionRunner, case_of
 from pursue_gen.vocabulary.statuses import statuses
-from pursue_gen.workspace import Options
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import HOLDING, RUNNING, WON
 from pursue_runtime.strategy import read_cover
-from tests.stories import files, model, scenario, solved
+from tests.stories import files, missions, model, scenario, solved
 
 SHOP = """\
 poi "desk"
@@ -88,8 +86,7 @@ def test_pages_say_which_is_next() -> None:
 @pytest.mark.parametrize("kind", sorted(OPPONENTS))
 def test_simulated_missions_answer_each(most: int, kind: str) -> None:
     text = SHOP.format(30, OPEN.format(most))
-    case, _ = case_of(scenario(text), solved(text), Options(), Settings(kind, until=150.0))
-    outcomes = [MissionRunner(case).run(seed) for seed in range(3)]
+    outcomes = missions(text, 3, Settings(kind, until=150.0))
     assert {outcome.end for outcome in outcomes} == {SAFE} and not any(each.problems for each in outcomes)
     assert all(len(outcome.duties) == 1 for outcome in outcomes)
 

@@ -13,9 +13,7 @@ from pursue_gen.solving.rules import Rules
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.tools.simulation.opponents import OPPONENTS
 from pursue_gen.tools.simulation.outcome import GOAL, Settings
-from pursue_gen.tools.simulation.runs import MissionRunner, case_of
-from pursue_gen.workspace import Options
-from tests.stories import files, scenario, solved
+from tests.stories import files, missions, scenario, solved
 
 SEEDLINGS = (Path(__file__).resolve().parents[2] / "scenarios" / "fields" / "seedlings.pur").read_text()
 
@@ -67,8 +65,7 @@ def test_less_often_and_less_far_apart_are_proposed() -> None:
 
 @pytest.mark.parametrize("kind", sorted(OPPONENTS))
 def test_simulated_missions_reach_it(kind: str) -> None:
-    case, _ = case_of(scenario(SEEDLINGS), solved(SEEDLINGS), Options(), Settings(kind))
-    outcomes = [MissionRunner(case).run(seed) for seed in range(6)]
+    outcomes = missions(SEEDLINGS, 6, Settings(kind))
     assert {outcome.end for outcome in outcomes} == {GOAL} and not any(each.problems for each in outcomes)
 
 

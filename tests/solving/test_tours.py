@@ -203,8 +203,8 @@ def test_missions_keep_the_patrol(rooms: int, robots: int, every: int) -> None:
     scenario = parse(text, "patrol.pur", "patrol")
     network, objective, strategy = tours_of(text)
     won = Solution(with_automata_of(network, strategy), objective, strategy, LATE, rules=Rules())
+    stage = MissionRunner(make_case(scenario, won, SolveRequest(), "random", (), None)[0]).stage
     for opponent in ("random", "still"):
-        runner = MissionRunner(make_case(scenario, won, SolveRequest(), opponent, (), None)[0])
         for seed in range(3):
-            mission = simulate_mission(runner.stage, Settings(opponent, until=400.0), seed)
+            mission = simulate_mission(stage, Settings(opponent, until=400.0), seed)
             assert mission.end == SAFE, mission

@@ -20,12 +20,10 @@ from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.uppaal import read_network, write_network
 from pursue_gen.tools.simulation.opponents import OPPONENTS
 from pursue_gen.tools.simulation.outcome import Settings
-from pursue_gen.tools.simulation.runs import MissionRunner, case_of
-from pursue_gen.workspace import Options
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import HOLDING
 from pursue_runtime.strategy import read_cover
-from tests.assumptions import files, free_model, model, scenario, solved
+from tests.assumptions import files, free_model, missions, model, scenario, solved
 from tests.plays import Play
 
 BELT = """\
@@ -164,8 +162,7 @@ def test_what_does_not_come_breaks_it_and_nobody_is_late() -> None:
 
 @pytest.mark.parametrize("kind", sorted(OPPONENTS))
 def test_simulated_belts_keep_to_it(kind: str) -> None:
-    case, _ = case_of(scenario(BELT.format(SAID)), solved(BELT.format(SAID)), Options(), Settings(kind))
-    outcomes = [MissionRunner(case).run(seed) for seed in range(6)]
+    outcomes = missions(BELT.format(SAID), 6, Settings(kind))
     assert not any("assumed" in outcome.reason for outcome in outcomes)
 
 

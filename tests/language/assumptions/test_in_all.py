@@ -19,12 +19,10 @@ from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.uppaal import read_network, write_network
 from pursue_gen.tools.simulation.opponents import OPPONENTS
 from pursue_gen.tools.simulation.outcome import GOAL, Settings
-from pursue_gen.tools.simulation.runs import MissionRunner, case_of
-from pursue_gen.workspace import Options
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import HOLDING
 from pursue_runtime.strategy import read_cover
-from tests.assumptions import files, free_model, model, scenario, solved
+from tests.assumptions import files, free_model, missions, model, scenario, solved
 from tests.plays import Play
 
 NURSERY = """\
@@ -115,6 +113,5 @@ def test_one_call_too_many_has_happened_and_breaks_it() -> None:
 
 @pytest.mark.parametrize("kind", sorted(OPPONENTS))
 def test_simulated_children_keep_to_it(kind: str) -> None:
-    case, _ = case_of(scenario(FEW), solved(FEW), Options(), Settings(kind))
-    outcomes = [MissionRunner(case).run(seed) for seed in range(10)]
+    outcomes = missions(FEW, 10, Settings(kind))
     assert {outcome.end for outcome in outcomes} == {GOAL}

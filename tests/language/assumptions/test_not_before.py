@@ -15,12 +15,10 @@ from pursue_gen.solving.rules import Rules
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.tools.simulation.opponents import OPPONENTS
 from pursue_gen.tools.simulation.outcome import GOAL, Settings
-from pursue_gen.tools.simulation.runs import MissionRunner, case_of
-from pursue_gen.workspace import Options
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import HOLDING
 from pursue_runtime.strategy import read_cover
-from tests.assumptions import files, free_model, model, scenario, solved
+from tests.assumptions import files, free_model, missions, model, scenario, solved
 from tests.plays import Play
 
 SHOP = """\
@@ -100,6 +98,5 @@ def test_a_guest_who_is_early_has_called_and_breaks_it() -> None:
 
 @pytest.mark.parametrize("kind", sorted(OPPONENTS))
 def test_simulated_guests_keep_to_it(kind: str) -> None:
-    case, _ = case_of(scenario(SHOP.format(LATER)), solved(SHOP.format(LATER)), Options(), Settings(kind))
-    outcomes = [MissionRunner(case).run(seed) for seed in range(10)]
+    outcomes = missions(SHOP.format(LATER), 10, Settings(kind))
     assert {outcome.end for outcome in outcomes} == {GOAL}

@@ -17,13 +17,11 @@ from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.uppaal import read_network, write_network
 from pursue_gen.tools.simulation.opponents import OPPONENTS
 from pursue_gen.tools.simulation.outcome import SAFE, Settings
-from pursue_gen.tools.simulation.runs import MissionRunner, case_of
-from pursue_gen.workspace import Options
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import HOLDING
 from pursue_runtime.strategy import read_cover
 from tests.assumptions import COMES as SAID
-from tests.assumptions import PLANT, files, free_model, model, scenario, solved
+from tests.assumptions import PLANT, files, free_model, missions, model, scenario, solved
 from tests.plays import Play
 
 CALLED = PLANT.replace("{}", SAID)
@@ -177,6 +175,5 @@ def test_a_mechanic_who_begins_to_eat_too_late_breaks_it_and_one_who_comes_does_
 
 @pytest.mark.parametrize("kind", sorted(OPPONENTS))
 def test_simulated_mechanics_keep_to_it(kind: str) -> None:
-    case, _ = case_of(scenario(CALLED), solved(CALLED), Options(), Settings(kind, until=200.0))
-    outcomes = [MissionRunner(case).run(seed) for seed in range(10)]
+    outcomes = missions(CALLED, 10, Settings(kind, until=200.0))
     assert {outcome.end for outcome in outcomes} == {SAFE}

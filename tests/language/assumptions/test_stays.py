@@ -19,12 +19,10 @@ from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.uppaal import read_network, write_network
 from pursue_gen.tools.simulation.opponents import OPPONENTS
 from pursue_gen.tools.simulation.outcome import GOAL, Settings
-from pursue_gen.tools.simulation.runs import MissionRunner, case_of
-from pursue_gen.workspace import Options
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import HOLDING
 from pursue_runtime.strategy import read_cover
-from tests.assumptions import files, free_model, model, scenario, solved
+from tests.assumptions import files, free_model, missions, model, scenario, solved
 from tests.plays import Play
 
 GALLERY = """\
@@ -135,8 +133,7 @@ def test_a_visitor_who_stays_too_long_breaks_it_and_is_not_late() -> None:
 
 @pytest.mark.parametrize("kind", sorted(OPPONENTS))
 def test_simulated_visitors_keep_to_it(kind: str) -> None:
-    case, _ = case_of(scenario(LONELY), solved(LONELY), Options(), Settings(kind))
-    outcomes = [MissionRunner(case).run(seed) for seed in range(10)]
+    outcomes = missions(LONELY, 10, Settings(kind))
     assert {outcome.end for outcome in outcomes} == {GOAL}
 
 
