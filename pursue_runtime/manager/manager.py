@@ -13,9 +13,8 @@ import time
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.bounded import DATA, json_object
-from pursue_runtime.bundle import LIMIT, ORDER_LENGTH, Order, Refused, read_order
+from pursue_runtime.bundle import LIMIT, ORDER_LENGTH, KeyFolder, Order, Refused, read_order
 from pursue_runtime.rate_limited_log import RateLimitedLog
-from pursue_runtime.trusted_keys import KeyFolder
 
 LOCAL_MISSION, MISSION_STATUS = "local_mission", "mission_status"
 LONGEST_HEADER = 4 * ORDER_LENGTH  # bytes of all headers of a request

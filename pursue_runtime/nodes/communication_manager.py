@@ -15,7 +15,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import String
 
 from pursue_runtime.arguments import KEYS, LOOPBACK, Argument, port
-from pursue_runtime.bundle import LIMIT
+from pursue_runtime.bundle import LIMIT, KeyFolder
 from pursue_runtime.data import Package
 from pursue_runtime.folders import keys_folder
 from pursue_runtime.manager.background import Background, ServerError, Service, bind
@@ -23,11 +23,20 @@ from pursue_runtime.manager.forwarder import Forwarder
 from pursue_runtime.manager.manager import LOCAL_MISSION, MISSION_STATUS, Manager, RequestLog, topic_names
 from pursue_runtime.manager.server import Limits, Server, tls
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, robot_name, run_node, subscribe
-from pursue_runtime.nodes.process import lower_priority
+from pursue_runtime.nodes.node import (
+    ERROR,
+    OK,
+    WARN,
+    Diagnostics,
+    Ending,
+    NodeReport,
+    lower_priority,
+    robot_name,
+    run_node,
+    subscribe,
+)
 from pursue_runtime.parameters import number, whole
 from pursue_runtime.slots import is_loopback
-from pursue_runtime.trusted_keys import KeyFolder
 
 ARGUMENTS = (
     KEYS,

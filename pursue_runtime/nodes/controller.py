@@ -23,15 +23,13 @@ from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.exeggutor import Exeggutor
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, log, run_node, subscribe
-from pursue_runtime.nodes.state_message import subscribe_states
-from pursue_runtime.nodes.state_printer import StatePrinter
+from pursue_runtime.nodes.state_message import StatePrinter, subscribe_states
 from pursue_runtime.nodes.witness import Witness
 from pursue_runtime.parameters import flag
-from pursue_runtime.sentences import in_words
+from pursue_runtime.sentences import in_words, trouble_values
 from pursue_runtime.state import LOST, STOPPED, WON, SystemState
-from pursue_runtime.state_filter import OLD, OURS, REFUSED
+from pursue_runtime.state_checks import OLD, OURS, REFUSED
 from pursue_runtime.strategy import parse_plan
-from pursue_runtime.troubles import trouble_values
 
 
 class Controller:

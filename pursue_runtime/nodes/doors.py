@@ -28,8 +28,18 @@ from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.door_links import linked
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, run_node, subscribe
-from pursue_runtime.nodes.process import lower_priority, run_to_end
+from pursue_runtime.nodes.node import (
+    ERROR,
+    OK,
+    WARN,
+    Diagnostics,
+    Ending,
+    NodeReport,
+    lower_priority,
+    run_node,
+    run_to_end,
+    subscribe,
+)
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import whole
 from pursue_runtime.state import LOST, STOPPED, WON, SystemState

@@ -17,8 +17,18 @@ from pursue_runtime.data import DataError, Package
 from pursue_runtime.event_words import MARKERS, PLAN
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, run_node, subscribe
-from pursue_runtime.nodes.process import lower_priority, restart_process
+from pursue_runtime.nodes.node import (
+    ERROR,
+    OK,
+    WARN,
+    Diagnostics,
+    Ending,
+    NodeReport,
+    lower_priority,
+    restart_process,
+    run_node,
+    subscribe,
+)
 from pursue_runtime.nodes.robot_link import needed
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import text

@@ -19,12 +19,11 @@ from pursue_runtime.folders import ros_home
 from pursue_runtime.missions import Missions, Source, own_source
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.node import Ending, subscribe
-from pursue_runtime.nodes.state_printer import StatePrinter
+from pursue_runtime.nodes.state_message import StatePrinter
 from pursue_runtime.nodes.witness import Witness
 from pursue_runtime.parameters import flag
 from pursue_runtime.state import WAITING, SystemState
-from pursue_runtime.state_checks import model_problem
-from pursue_runtime.state_filter import OLD, OTHER, OURS, REFUSED, StateFilter
+from pursue_runtime.state_checks import OLD, OTHER, OURS, REFUSED, StateFilter, model_problem
 from pursue_runtime.strategy import Strategy, parse_plan
 
 PATIENCE = 1.0

@@ -35,16 +35,14 @@ from pursue_runtime.nodes.node import (
     Diagnostics,
     Ending,
     NodeReport,
+    restart_process,
     run_node,
     start_thread,
     subscribe,
 )
 from pursue_runtime.nodes.order_desk import OrderDesk
-from pursue_runtime.nodes.plain_words import PlainWords
-from pursue_runtime.nodes.process import restart_process
 from pursue_runtime.nodes.publishing import ServedFirst, is_connected
-from pursue_runtime.nodes.state_message import message_of
-from pursue_runtime.nodes.state_printer import StatePrinter
+from pursue_runtime.nodes.state_message import PlainWords, StatePrinter, message_of
 from pursue_runtime.nodes.witness import Witnesses
 from pursue_runtime.observer.journal import Journal, last_mission
 from pursue_runtime.observer.mission import Mission

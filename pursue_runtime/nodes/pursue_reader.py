@@ -20,7 +20,7 @@ import rospy
 from std_msgs.msg import String
 
 from pursue_runtime.arguments import KEYS
-from pursue_runtime.bundle import LIMIT
+from pursue_runtime.bundle import LIMIT, KeyFolder
 from pursue_runtime.data import Package
 from pursue_runtime.event_words import STATE
 from pursue_runtime.folders import keys_folder, missions_folder
@@ -35,7 +35,6 @@ from pursue_runtime.reader.packages import ALL, packages_here, without_package
 from pursue_runtime.reader.reader import KEYS_PERIOD, PATIENCE, Machine, Reader
 from pursue_runtime.reader.store import KEEP, Store
 from pursue_runtime.state import SystemState
-from pursue_runtime.trusted_keys import KeyFolder
 
 RETRY = 10.0
 """Seconds until a store that cannot be used is tried again."""

@@ -27,9 +27,19 @@ from pursue_runtime.event_words import STATE, SYSTEM_STATE
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.nodes.links import Links, is_gone
 from pursue_runtime.nodes.membership import Membership
-from pursue_runtime.nodes.node import OK, REFUSED, WARN, Diagnostics, Ending, NodeReport, run_node, subscribe
+from pursue_runtime.nodes.node import (
+    OK,
+    REFUSED,
+    WARN,
+    Diagnostics,
+    Ending,
+    NodeReport,
+    lower_priority,
+    restart_process,
+    run_node,
+    subscribe,
+)
 from pursue_runtime.nodes.positions import namespaces
-from pursue_runtime.nodes.process import lower_priority, restart_process
 from pursue_runtime.nodes.state_message import state_of
 from pursue_runtime.parameters import names
 from pursue_runtime.state import ENDED, WAITING, WON, SystemState

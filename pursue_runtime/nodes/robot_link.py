@@ -12,10 +12,9 @@ from geometry_msgs.msg import Pose, PoseStamped, PoseWithCovarianceStamped
 from std_msgs.msg import String
 
 from pursue_runtime.controller.answers import outcome_name
-from pursue_runtime.controller.frames import LEVEL, NO_LEVELS, STOREY, MapFrames
 from pursue_runtime.controller.goal import ABORTED, Answer, Goal
 from pursue_runtime.controller.settings import Settings
-from pursue_runtime.controller.whereabouts import Position, yaw_of
+from pursue_runtime.controller.whereabouts import LEVEL, NO_LEVELS, STOREY, MapFrames, Position, yaw_of
 from pursue_runtime.data import DataError
 from pursue_runtime.nodes.node import Ending, subscribe
 from pursue_runtime.nodes.publishing import ServedFirst, is_recorder, listeners, publish_to_one

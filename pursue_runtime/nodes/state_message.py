@@ -1,16 +1,22 @@
-"""States of the mission as messages on `pursue/state`, and the connection of each node to them."""
+"""States of the mission as messages on `pursue/state`, the connection of each node to them, and what nodes of the
+thesis have of them: its `print_state` (its listing 4.4), and plain words."""
 
 from __future__ import annotations
 
-from typing import Callable, Sequence
+import sys
+from functools import partial
+from typing import Callable, Optional, Sequence, Tuple
 
 import rospy
 from pursue_msgs.msg import AutomatonLocation, ClockValue, Variable
 from pursue_msgs.msg import SystemState as Message
+from std_msgs.msg import String
 
-from pursue_runtime.event_words import STATE
+from pursue_runtime.event_words import EVENTS, FINISH, PLAIN_WORDS, STATE
+from pursue_runtime.nodes.alarm import Later
 from pursue_runtime.nodes.node import Ending, subscribe
-from pursue_runtime.state import LISTS, SystemState
+from pursue_runtime.parameters import ParameterError, flag
+from pursue_runtime.state import ENDED, LISTS, WON, SystemState, state_lines
 from pursue_runtime.state_checks import names_problem, state_problem
 
 THROTTLE = 10.0
@@ -96,3 +102,50 @@ def subscribe_states(
         on_state(state, publisher)
 
     return subscribe(topic, Message, receive, ending, queue_size=1000, tcp_nodelay=True)
+
+
+class StatePrinter:
+    """Prints on standard output, after the reaction to a state: nothing is delayed by a slow terminal."""
+
+    def __init__(self, ending: Ending) -> None:
+        """`write` gets the lines; a node that writes to a terminal itself replaces it. Raises ParameterError."""
+        self.write: Optional[Callable[[Sequence[str]], object]] = None
+        if flag(rospy.get_param("~", {}), "print_state"):
+            later = Later("print_state", ending)
+            self.write = lambda lines: later.do(partial(_print, lines))
+        self._name = rospy.get_name().strip("/")
+        self._last: Tuple[object, ...] = ()
+
+    def on_state(self, state: SystemState) -> None:
+        """Print a state that this node has taken, unless it is the last one again, as a heartbeat is."""
+        key = (state.mission, state.seq, state.status)
+        if self.write is not None and key != self._last:
+            self._last = key
+            self.write(state_lines(state, self._name))
+
+
+def _print(lines: Sequence[str]) -> None:
+    sys.stdout.write("".join(f"{line}\n" for line in lines))
+    sys.stdout.flush()
+
+
+class PlainWords:
+    """Publishes the events of the states that follow `known`, each once, and `Finish!` when the mission is won."""
+
+    def __init__(self, known: SystemState) -> None:
+        """Raises ParameterError where the topic is remapped to one on which words count."""
+        if rospy.resolve_name(PLAIN_WORDS) == rospy.resolve_name(EVENTS):
+            raise ParameterError(f"{PLAIN_WORDS} is remapped to {EVENTS}, where its words would count as reports")
+        self._seq, self._ended = known.seq, known.status in ENDED
+        self._publisher = rospy.Publisher(PLAIN_WORDS, String, queue_size=1000, tcp_nodelay=True)
+
+    def on_state(self, state: SystemState) -> None:
+        """Publish what led to a state. Raises rospy.ROSException while the node is going down."""
+        if state.seq > self._seq:
+            self._seq = state.seq
+            if state.event:
+                self._publisher.publish(state.event)
+        if state.status in ENDED and not self._ended:
+            self._ended = True
+            if state.status == WON:
+                self._publisher.publish(FINISH)

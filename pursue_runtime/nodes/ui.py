@@ -18,22 +18,30 @@ from pursue_runtime.model import Model
 from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, init_node, subscribe
-from pursue_runtime.nodes.process import lower_priority, restart_process
+from pursue_runtime.nodes.node import (
+    ERROR,
+    OK,
+    WARN,
+    Diagnostics,
+    Ending,
+    NodeReport,
+    init_node,
+    lower_priority,
+    restart_process,
+    subscribe,
+)
 from pursue_runtime.nodes.publishing import Newcomers, listeners
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.nodes.ui_page import UIPage
 from pursue_runtime.nodes.ui_state import GATHERING, READY, RUNNING, STARTING, UIState
-from pursue_runtime.nodes.ui_traffic import Traffic
-from pursue_runtime.nodes.ui_typed import Typed
+from pursue_runtime.nodes.ui_terminal import Traffic, Typed
 from pursue_runtime.state import STOPPED, WAITING, WON, SystemState
 from pursue_runtime.strategy import Strategy, parse_plan
-from pursue_runtime.ui.environment import make_player
+from pursue_runtime.ui.environment import TraceError, make_player
 from pursue_runtime.ui.mission_view import Environment, reporters
 from pursue_runtime.ui.options import ARGUMENTS, Options, read_options, read_told
 from pursue_runtime.ui.strategies import strategies_in
 from pursue_runtime.ui.terminal import BAD, BOLD, GOOD, PLAIN, on_terminal
-from pursue_runtime.ui.trace import TraceError
 from pursue_runtime.ui.verdict import ALONE, INTERRUPTED, NOT_STARTED, Verdict, drop_interrupted, write_verdict
 
 RETRY = 1.0  # real seconds until `_start_` is published again

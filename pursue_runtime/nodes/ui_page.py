@@ -12,18 +12,18 @@ import rospy
 
 from pursue_runtime.event_words import FINISH, STOP
 from pursue_runtime.folders import scenario_folder
+from pursue_runtime.links import LOOK, Presence
 from pursue_runtime.nodes.links import traffic
 from pursue_runtime.nodes.node import start_thread
 from pursue_runtime.nodes.positions import watch_positions
 from pursue_runtime.nodes.ui_state import UIState
-from pursue_runtime.nodes.ui_typed import Typed
+from pursue_runtime.nodes.ui_terminal import Typed
+from pursue_runtime.sentences import Troubles
 from pursue_runtime.state import LIVE, RUNNING, WAITING, SystemState
-from pursue_runtime.troubles import Troubles
 from pursue_runtime.ui.mission_view import MARGIN
 from pursue_runtime.ui.page import Facts
 from pursue_runtime.ui.page_server import ADDRESS, PageServer, format_address, open_page
 from pursue_runtime.ui.past_missions import PastMissions, shown_missions, workspace_of
-from pursue_runtime.ui.presence import LOOK, Presence
 from pursue_runtime.ui.requests import PageRequest, Presses
 
 NO_ANSWER = "The observer does not answer"

@@ -14,7 +14,7 @@ from pursue_runtime.event_words import EVENTS
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import Ending
-from pursue_runtime.nodes.ui_orders import UIOrders
+from pursue_runtime.nodes.order_desk import UIOrders
 from pursue_runtime.ui.at_doors import AtDoors
 from pursue_runtime.ui.mission_view import Environment, MissionView, Readiness
 from pursue_runtime.ui.options import Options

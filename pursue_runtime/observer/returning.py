@@ -12,8 +12,8 @@ from typing import Any, Callable, Collection, List, Mapping, NamedTuple, Optiona
 from pursue_runtime.data import DataError
 from pursue_runtime.event_words import EVENTS, STOP, said_at
 from pursue_runtime.observer.journal import Journal
-from pursue_runtime.observer.mark import Rank
 from pursue_runtime.observer.mission import Mission
+from pursue_runtime.observer.records import Rank
 from pursue_runtime.observer.witnesses import find_state
 from pursue_runtime.state import LIVE, SystemState
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from pursue_runtime.model import Model
-from pursue_runtime.troubles import Troubles, trouble_values
+from pursue_runtime.sentences import Troubles, trouble_values
 from pursue_runtime.ui.page import BAD, FloorPlan, Page
 from pursue_runtime.ui.page_server import PageServer
 from tests.runtime.ui.test_mission_view import DATA

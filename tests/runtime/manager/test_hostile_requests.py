@@ -22,11 +22,11 @@ from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Se
 import pytest
 
 from pursue_runtime import bundle as mission_bundle
+from pursue_runtime.bundle import KeyFolder
 from pursue_runtime.manifest import make_manifest
 from pursue_runtime.reader import reader as reader_core
 from pursue_runtime.reader.reader import Reader
 from pursue_runtime.reader.store import Store
-from pursue_runtime.trusted_keys import KeyFolder
 from tests.runtime.manager_stage import ROBOT, Desk, Robot, Sent, ask, head, send
 from tests.runtime.reader_stage import POSES, STRATEGY
 from tests.waiting import PATIENCE, connected, may_close, rest, until

@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_runtime import bundle as mission_bundle
+from pursue_runtime.bundle import KeyFolder
 from pursue_runtime.manager import manager as manager_core
 from pursue_runtime.manager.manager import (
     HTTP,
@@ -23,7 +24,6 @@ from pursue_runtime.manager.manager import (
     parse_length,
     topic_names,
 )
-from pursue_runtime.trusted_keys import KeyFolder
 from tests.runtime.manager_stage import ROBOT, Desk
 
 TICKET = "0" * 31 + "1"

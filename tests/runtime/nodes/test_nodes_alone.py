@@ -18,10 +18,9 @@ import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from std_msgs.msg import String
 
-from pursue_runtime.controller.frames import MapFrames
 from pursue_runtime.controller.goal import Goal, Movement
 from pursue_runtime.controller.settings import Settings
-from pursue_runtime.controller.whereabouts import Position, place_of
+from pursue_runtime.controller.whereabouts import MapFrames, Position, place_of
 from pursue_runtime.nodes import mission_test, positions, recorder, robot_link
 from pursue_runtime.nodes.communication_manager import CommunicationManager
 from pursue_runtime.nodes.drive_legs import DriveLegs
