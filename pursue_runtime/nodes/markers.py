@@ -58,7 +58,8 @@ class MarkersNode:
         settings = source.read("ui.yaml")
         plan = read_floor_plan(source.read("poses.yaml"), settings)
         self.frame = text(rospy.get_param("~", {}), "map_frame", "map")
-        self.picture = Picture(model, plan, read_spots(settings, plan), strategies_of(source))
+        self.strategies = {0: strategies_of(source)}  # by the number of their plan
+        self.picture = Picture(model, plan, read_spots(settings, plan), self.strategies)
         self.lock = threading.Lock()
         self.shown: List[Mark] = []
         self.state: Optional[SystemState] = None
@@ -86,7 +87,7 @@ class MarkersNode:
             return
         if plan.get("mission", "") in ("", self.membership.source.mission):
             with self.lock:
-                self.picture.add_plan(plan["plan"], strategies)
+                self.strategies[plan["plan"]] = strategies
                 self.show(self.state)
 
     def show(self, state: Optional[SystemState]) -> None:

@@ -139,9 +139,9 @@ class UI(UIState):
         if plan.get("mission", "") not in ("", self.membership.source.mission):
             return
         with self.lock:
-            self.page.on_plan(plan)
             with contextlib.suppress(DataError):  # the nodes that need it say what is wrong with it
-                self.mission.add_turns(plan["plan"], strategies_in(plan))
+                self.strategies[plan["plan"]] = strategies_in(plan)
+            self.page.on_plan(plan)
             if orders is not None:
                 self.mission.add_plan(plan["plan"], orders)
                 self.act()

@@ -56,7 +56,8 @@ class UIPage:
     def open(self, settings: Mapping[str, Any]) -> None:
         """Serve the page, where one is wanted. Raises ParameterError and other DataErrors."""
         ui = self._ui
-        self._board = open_page(ui.model, ui.options, settings, ui.membership.source, self, ui.at_doors)
+        shown = ui.strategies, ui.at_doors
+        self._board = open_page(ui.model, ui.options, settings, ui.membership.source, self, *shown)
         if self._board is not None:
             start_thread("presence", self._watch, ui.ending)
             watch_positions([robot.name for robot in ui.model.of_kind("robot")], ui.ending, self._board.on_positions)

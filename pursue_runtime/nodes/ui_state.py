@@ -36,7 +36,9 @@ class UIState:
         self, options: Options, membership: Membership, ending: Ending, player: Environment, model: Model
     ) -> None:
         self.options, self.membership, self.ending, self.model = options, membership, ending, model
-        turns = Turns(model, strategies_of(membership.source))
+        self.strategies = {0: strategies_of(membership.source)}
+        """Those of all controllers by the number of their plan."""
+        turns = Turns(model, self.strategies)
         self.at_doors = AtDoors(membership.source.read("ui.yaml"), model.shown)
         self.mission = MissionView(model, player, membership.people(), turns, self.at_doors)
         self.readiness = Readiness(options.nodes)

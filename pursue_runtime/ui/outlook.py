@@ -11,11 +11,11 @@ from pursue_runtime.event_words import event_in
 from pursue_runtime.locations import is_under_way
 from pursue_runtime.model import Model, Position
 from pursue_runtime.state import SystemState
-from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui.course import Step, course, first_commands, is_certain, next_command
 from pursue_runtime.ui.mission_view import PossibleWord
 from pursue_runtime.ui.reasons import Why
 from pursue_runtime.ui.statuses import Status
+from pursue_runtime.ui.strategies import Strategies
 from pursue_runtime.ui.turns import Turns
 
 
@@ -36,17 +36,11 @@ class Sight(NamedTuple):
 class Outlook:
     """What the strategies of a mission have in store."""
 
-    def __init__(self, model: Model, statuses: Sequence[Status], strategies: Sequence[Strategy]) -> None:
-        self._model = model
+    def __init__(self, model: Model, statuses: Sequence[Status], strategies: Strategies) -> None:
+        self._model, self._strategies = model, strategies
         self._why = Why(model, statuses, strategies)
         self._turns = Turns(model, strategies)
         self._seen: Tuple[object, Optional[Sight]] = (None, None)  # of which state
-
-    def add_plan(self, number: int, strategies: Sequence[Strategy]) -> None:
-        """Take the strategies of a new plan."""
-        self._why.add_plan(number, strategies)
-        self._turns.add_plan(number, strategies)
-        self._seen = (None, None)
 
     def on_state(self, state: SystemState) -> None:
         """A state came."""
@@ -54,7 +48,8 @@ class Outlook:
 
     def sight(self, state: SystemState, at: float, offers: Sequence[PossibleWord]) -> Sight:
         """What is to be seen in a state that began at `at`; `offers`: what agents can begin or end in it."""
-        key = state.seq, state.stamp, state.plan, state.status, state.lost, at
+        known = self._strategies.get(state.plan)
+        key = known, state.seq, state.stamp, state.plan, state.status, state.lost, at
         found = self._seen[1] if self._seen[0] == key else None
         if found is None:
             found = self._look(state, at, offers)
@@ -62,7 +57,7 @@ class Outlook:
         return found
 
     def _look(self, state: SystemState, at: float, offers: Sequence[PossibleWord]) -> Sight:
-        strategies = self._why.strategies(state.plan)
+        strategies = self._strategies.get(state.plan, ())
         steps = course(self._model, strategies, state) if strategies else []
         first = first_commands(steps)
         waits = self._turns.waits(state)
@@ -88,7 +83,7 @@ class Outlook:
                 continue
             after = self._model.after(moves, position)
             there = state._replace(locations=after.locations, values=after.values, clocks=after.clocks)
-            step = next_command(course(self._model, self._why.strategies(state.plan), there))
+            step = next_command(course(self._model, self._strategies.get(state.plan, ()), there))
             if step is not None and (usual is None or (step.agent, step.does) != (usual.agent, usual.does)):
                 yield offer.word, self._says(step)
 

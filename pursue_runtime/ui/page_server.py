@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import threading
 from typing import Any, Dict, List, Mapping, Optional, Protocol, Sequence, Tuple
 
-from pursue_runtime.data import DataError
 from pursue_runtime.missions import Source
 from pursue_runtime.model import Model
 from pursue_runtime.parameters import ParameterError
@@ -20,7 +18,7 @@ from pursue_runtime.ui.page import BAD, GOOD, NOTE, Facts, Page, read_floor_plan
 from pursue_runtime.ui.promise import read_promise
 from pursue_runtime.ui.requests import PageRequest, read_request
 from pursue_runtime.ui.statuses import read_statuses
-from pursue_runtime.ui.strategies import strategies_of
+from pursue_runtime.ui.strategies import Strategies
 
 STATIC = os.path.join(os.path.dirname(os.path.realpath(__file__)), "static")
 """The folder of the page's files."""
@@ -57,9 +55,8 @@ class PageServer:
         self._page.on_state(state, at)
 
     def on_plan(self, plan: Mapping[str, Any]) -> None:
-        """Take a new plan, as `parse_plan` returns it: what the page says of it needs its strategies."""
-        with contextlib.suppress(DataError):  # the nodes that need it say what is wrong with it
-            self._page.add_plan(plan)
+        """Take a new plan, as `parse_plan` returns it."""
+        self._page.add_plan(plan)
 
     def on_positions(
         self, positions: Mapping[str, Sequence[float]], paths: Mapping[str, Sequence[Sequence[float]]]
@@ -147,7 +144,8 @@ def open_page(
     settings: Mapping[str, Any],
     source: Source,
     node: PageNode,
-    at_doors: Optional[AtDoors] = None,
+    strategies: Strategies,
+    at_doors: AtDoors,
 ) -> Optional[PageServer]:
     """Serves a page, where one is wanted, at the address of the one before if the node has begun anew. Raises
     ParameterError and other DataErrors.
@@ -165,7 +163,7 @@ def open_page(
     people = reporters(model, options.ends, settings)
     words = read_statuses(settings), read_promise(settings)
     floor = read_floor(source.folder) if source.digests is None else None  # it is the workspace's, not a mission's
-    page = Page(model, read_floor_plan(poses, settings), people, *words, strategies_of(source), floor, at_doors)
+    page = Page(model, read_floor_plan(poses, settings), people, *words, strategies, floor, at_doors)
     board = PageServer(page, node)
     try:
         board.web = Web(

@@ -14,6 +14,7 @@ from pursue_runtime.model import Automaton, Model
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Command, Strategy
 from pursue_runtime.ui.statuses import Status
+from pursue_runtime.ui.strategies import Strategies
 from pursue_runtime.vocabulary import deed, place
 
 _NEXT = "next: "
@@ -91,20 +92,10 @@ def _does(model: Model, automata: Mapping[str, Automaton], command: Command) -> 
 class Why:
     """Why each agent does what it does, from the states of a mission and the strategy of the plan in force."""
 
-    def __init__(self, model: Model, statuses: Sequence[Status], strategies: Sequence[Strategy] = ()) -> None:
-        self._model = model
-        self._statuses = statuses
-        self._plans: Dict[int, Tuple[Strategy, ...]] = {0: tuple(strategies)}
+    def __init__(self, model: Model, statuses: Sequence[Status], strategies: Strategies) -> None:
+        self._model, self._statuses, self._strategies = model, statuses, strategies
         self._last: Optional[SystemState] = None
         self._texts: Dict[str, Tuple[str, str]] = {}  # agent → where it has been sent, and why
-
-    def add_plan(self, number: int, strategies: Sequence[Strategy]) -> None:
-        """Take the strategies of a new plan."""
-        self._plans[number] = tuple(strategies)
-
-    def strategies(self, plan: int) -> Tuple[Strategy, ...]:
-        """Return the strategies of a plan; () where they are not known."""
-        return self._plans.get(plan, ())
 
     def on_state(self, state: SystemState) -> None:
         """A state came."""
@@ -113,7 +104,7 @@ class Why:
         follows = last is not None and last.seq == state.seq - 1 and state.commanded
         if last is None or not follows or state.agent not in state.locations:
             return
-        for strategy in self.strategies(last.plan):
+        for strategy in self._strategies.get(last.plan, ()):
             if state.agent in strategy.agents:
                 found = reasons(strategy, last, state.agent, state.event)
                 text = reason_text(self._model, self._statuses, last, found)

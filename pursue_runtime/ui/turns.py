@@ -14,24 +14,25 @@ from pursue_runtime.model import Model
 from pursue_runtime.sentences import listed
 from pursue_runtime.state import RUNNING, SystemState
 from pursue_runtime.strategy import Entry, Strategy
+from pursue_runtime.ui.strategies import Strategies
 
 
 class Turns:
-    """Whose turn it is at places, by these strategies; `add_plan` takes those of a new plan."""
+    """Whose turn it is at places, by these strategies."""
 
-    def __init__(self, model: Model, strategies: Sequence[Strategy]) -> None:
-        self._model = model
-        self._plans: Dict[int, Mapping[Tuple[str, str], List[Entry]]] = {0: _leaving(strategies)}
-
-    def add_plan(self, number: int, strategies: Sequence[Strategy]) -> None:
-        """Take the strategies of a new plan."""
-        self._plans[number] = _leaving(strategies)
+    def __init__(self, model: Model, strategies: Strategies) -> None:
+        self._model, self._strategies = model, strategies
+        self._of: Sequence[Strategy] = ()
+        self._leaving: Mapping[Tuple[str, str], List[Entry]] = {}  # by those
 
     def waits(self, state: SystemState) -> Dict[str, str]:
         """For each agent that waits for others at a place: `waits for bot1 to leave hall2`."""
         if state.status != RUNNING:
             return {}
-        entries = self._plans.get(state.plan, {})
+        strategies = self._strategies.get(state.plan, ())
+        if strategies is not self._of:
+            self._of, self._leaving = strategies, _leaving(strategies)
+        entries = self._leaving
         found = {name: self._waits(state, entries.get((name, here), ())) for name, here in state.locations.items()}
         return {name: text for name, text in found.items() if text}
 

@@ -92,7 +92,8 @@ class Node:
         self.clock: Callable[[], float] = time.monotonic
         self.phase, self.verdict, self.shown = "ready", None, self.clock()
         self.answers, self.received, self.offers = True, 0.0, ()
-        page = Page(model, FloorPlan(places, ways), reporters(model, ends, {}), STATUSES, promise, strategies, floor)
+        people, known = reporters(model, ends, {}), {0: strategies}
+        page = Page(model, FloorPlan(places, ways), people, STATUSES, promise, known, floor)
         self.board = ui_board.PageServer(page, self)
         self.pictures = {} if floor is None else {ui_board.FLOOR: (floor.picture, "image/png")}
 
