@@ -56,7 +56,7 @@ def send(
     from pursue_gen.tools.transport.bundles import is_bundle, sign
     from pursue_gen.tools.transport.keys import load_private
     from pursue_gen.tools.transport.robots_file import chosen, read_robots
-    from pursue_gen.tools.transport.send_outcome import after_waiting, success
+    from pursue_gen.tools.transport.send_report import after_waiting, success
     from pursue_gen.tools.transport.sender import wait as wait_for
 
     is_default = request.is_default and places == Poses()
@@ -134,8 +134,7 @@ def _send(
 def _send_back(mission: Optional[str], robots: Sequence[Robot], private: Ed25519PrivateKey, as_json_: bool) -> Sent:
     """Orders the robots back to an earlier mission; where one is out of reach, prints the table and raises."""
     from pursue_gen.tools.transport.send_checks import kept_by_all, mission_digest, previous
-    from pursue_gen.tools.transport.send_outcome import all_reached
-    from pursue_gen.tools.transport.send_table import with_activity
+    from pursue_gen.tools.transport.send_report import all_reached, with_activity
     from pursue_gen.tools.transport.sender import look
     from pursue_gen.tools.transport.sender import send as send_to
 
@@ -149,8 +148,7 @@ def _send_back(mission: Optional[str], robots: Sequence[Robot], private: Ed25519
 
 def _show_status(robots: Sequence[Robot], as_json_: bool) -> None:
     """Prints what each robot plays, as a table."""
-    from pursue_gen.tools.transport.send_outcome import check_alike
-    from pursue_gen.tools.transport.send_table import with_activity
+    from pursue_gen.tools.transport.send_report import check_alike, with_activity
     from pursue_gen.tools.transport.sender import look
 
     rows = with_activity(look(robots))
@@ -159,7 +157,7 @@ def _show_status(robots: Sequence[Robot], as_json_: bool) -> None:
 
 
 def _show(rows: Sequence[Row], as_json_: bool, looked: bool = False, **facts: object) -> None:
-    from pursue_gen.tools.transport.send_table import as_json, table
+    from pursue_gen.tools.transport.send_report import as_json, table
 
     if as_json_:
         print(json.dumps(as_json(rows, **facts), indent=1))

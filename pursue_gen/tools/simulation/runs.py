@@ -16,8 +16,8 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import Unfinished
 from pursue_gen.proof.margin import USUAL, strategy_margin
 from pursue_gen.solving.solution import Solution
+from pursue_gen.tools.simulation.duties import Duty
 from pursue_gen.tools.simulation.mission import simulate_mission
-from pursue_gen.tools.simulation.open_requests import Duty
 from pursue_gen.tools.simulation.outcome import FAILED, GOAL, HELD, SAFE, Outcome, Settings
 from pursue_gen.tools.simulation.promises import duties_of
 from pursue_gen.tools.simulation.remaining import Remaining

@@ -10,9 +10,8 @@ from pursue_runtime.data import DataError
 from pursue_runtime.model import Model
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui.course import course
-from pursue_runtime.ui.outlook import Outlook
+from pursue_runtime.ui.outlook import Outlook, reason_text, reasons
 from pursue_runtime.ui.page import Facts, FloorPlan, Page
-from pursue_runtime.ui.reasons import reason_text, reasons
 from pursue_runtime.ui.statuses import Status
 from pursue_runtime.ui.strategies import strategies_in, strategies_of
 from tests.runtime.models import model_data, mover, state, worker
