@@ -11,7 +11,6 @@ import os
 from typing import Dict, List, Mapping, Optional, Tuple
 
 import rospy
-from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import String
 
 from pursue_runtime.arguments import KEYS, LOOPBACK, Argument, port
@@ -22,12 +21,11 @@ from pursue_runtime.manager.background import Background, ServerError, Service, 
 from pursue_runtime.manager.forwarder import Forwarder
 from pursue_runtime.manager.manager import LOCAL_MISSION, MISSION_STATUS, Manager, RequestLog, topic_names
 from pursue_runtime.manager.server import Limits, Server, tls
-from pursue_runtime.nodes.links import Links
+from pursue_runtime.nodes.links import Diagnostics, pulses_of_all
 from pursue_runtime.nodes.node import (
     ERROR,
     OK,
     WARN,
-    Diagnostics,
     Ending,
     NodeReport,
     lower_priority,
@@ -75,8 +73,7 @@ class CommunicationManager:
         ]
         self.background.start()
         self.log_address(host, exposed, context is not None)
-        pulses = subscribe("/diagnostics", DiagnosticArray, lambda _: None, self.ending, queue_size=100)
-        Diagnostics(self.report, self.ending, Links(pulses, ending=self.ending, lost=self.ending.without_master).amend)
+        Diagnostics(self.report, self.ending, pulses_of_all(self.ending))
 
     def make_forwarder(self, host: str, told: Mapping[str, str]) -> Tuple[Optional[Forwarder], List[str]]:
         """The socket and the topics that go there; none without topics. Raises ServerError and ParameterError."""

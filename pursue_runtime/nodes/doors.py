@@ -26,13 +26,11 @@ from pursue_runtime.doors.settings import read_door_settings, read_lift_settings
 from pursue_runtime.event_words import parse_word
 from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.door_links import linked
-from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import (
-    ERROR,
+    NO_STATE,
     OK,
     WARN,
-    Diagnostics,
     Ending,
     NodeReport,
     lower_priority,
@@ -40,7 +38,6 @@ from pursue_runtime.nodes.node import (
     run_to_end,
     subscribe,
 )
-from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import whole
 from pursue_runtime.state import LOST, STOPPED, WON, SystemState
 
@@ -77,10 +74,7 @@ class DoorsNode:
         }
         if lifts:
             subscribe(ABOARD, String, self.on_aboard, self.ending, queue_size=100)
-        states = subscribe_states(self.on_state, self.ending, on_malformed=self.membership.count_malformed)
-        pulses = subscribe("/diagnostics", rospy.AnyMsg, lambda _: None, self.ending, queue_size=100)
-        links = Links(states, pulses, ending=self.ending, lost=self.ending.without_master)
-        Diagnostics(self.report, self.ending, links.amend)
+        self.membership.follow(self.on_state, self.report)
 
     def seconds(self, name: str) -> float:
         """Return the seconds in which a door, or a lift, has done what it was asked at the latest."""
@@ -138,18 +132,14 @@ class DoorsNode:
     def report(self) -> NodeReport:
         """Return the report for /diagnostics."""
         with self.lock:
-            state, refused, trouble = self.state, self.membership.refused, self.membership.trouble
-            now = rospy.get_time()
+            now, state = rospy.get_time(), self.state
             shut = self.doors.waited_for(now)
             late = sorted(door for door, seconds in shut.items() if seconds > self.seconds(door))
             late += sorted(self.lifts.late(now, self.unit))
             waited_for = [*shut, *self.lifts.waited_for(now)]
-            values: Dict[str, object] = {"mission": self.membership.source.mission, "waited_for": " ".join(waited_for)}
-        values.update(self.membership.counts)
-        if refused:
-            return NodeReport(False, ERROR, f"refused {refused}", values)
-        if trouble or state is None:
-            return NodeReport(state is not None, WARN, trouble or "no state from the observer yet", values)
+            values: Dict[str, object] = {"waited_for": " ".join(waited_for)}
+        if state is None:
+            return NodeReport(False, WARN, NO_STATE, values)
         if late:
             return NodeReport(True, WARN, f"{' and '.join(late)} should be open by now", values)
         return NodeReport(True, OK, state.status, values)

@@ -15,11 +15,11 @@ import time
 import traceback
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Callable, Dict, Mapping, NamedTuple, NoReturn, Optional, Sequence, Tuple, Type
+from typing import Any, Callable, Mapping, NamedTuple, NoReturn, Optional, Sequence, Tuple, Type
 
 import rosgraph
 import rospy
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticStatus
 from rosgraph.xmlrpc import ThreadingXMLRPCServer
 
 from pursue_runtime.arguments import Argument, ignored, read_arguments
@@ -28,9 +28,10 @@ from pursue_runtime.links import MASTER_PROBLEMS
 from pursue_runtime.links import REFUSED as MASTER_REFUSED
 from pursue_runtime.parameters import ParameterError
 
+NO_STATE = "no state from the observer yet"
+
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 STALE = DiagnosticStatus.STALE  # what the node knows is old
-
 
 LOGS = {"debug": rospy.logdebug, "info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
 
@@ -57,7 +58,7 @@ class NodeReport(NamedTuple):
     ready: bool
     level: int
     message: str
-    values: Dict[str, object]
+    values: Mapping[str, object]
 
 
 def start_thread(name: str, run: Callable[[], object], ending: Ending) -> None:
@@ -93,43 +94,6 @@ def subscribe(
                 ending.end(FAILED)
 
     return rospy.Subscriber(topic, kind, guarded, **options)
-
-
-class Diagnostics:
-    """Publishes a report on /diagnostics once a second of real time: simulated time may stand still.
-
-    `amend` adds what is wrong with the connections and the master (see `Links`).
-    """
-
-    def __init__(
-        self, report: Callable[[], NodeReport], ending: Ending, amend: Callable[[NodeReport], NodeReport]
-    ) -> None:
-        self._name = rospy.get_name().lstrip("/")
-        self._report = report
-        self._amend = amend
-        self._publisher = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=10)
-        start_thread("diagnostics", self._run, ending)
-
-    def _run(self) -> None:
-        while not rospy.is_shutdown():
-            self.publish()
-            time.sleep(1.0)
-
-    def publish(self) -> None:
-        """Publishes the report of now."""
-        report = self._amend(self._report())
-        values = {"ready": str(report.ready).lower(), **report.values}
-        status = DiagnosticStatus(
-            level=report.level,
-            name=f"{self._name}: mission",
-            message=report.message,
-            hardware_id=self._name,
-            values=[KeyValue(key, str(value)) for key, value in values.items()],
-        )
-        array = DiagnosticArray(status=[status])
-        array.header.stamp = rospy.Time.now()
-        with contextlib.suppress(rospy.ROSException):  # the node is going down
-            self._publisher.publish(array)
 
 
 FAILED = 1

@@ -26,8 +26,8 @@ from pursue_runtime.event_words import STATE
 from pursue_runtime.folders import keys_folder, missions_folder
 from pursue_runtime.manifest import MISSION, mission_id
 from pursue_runtime.nodes.alarm import Alarm
-from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import OK, WARN, Diagnostics, Ending, NodeReport, log, robot_name, run_node, subscribe
+from pursue_runtime.nodes.links import Diagnostics
+from pursue_runtime.nodes.node import OK, WARN, Ending, NodeReport, log, robot_name, run_node, subscribe
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import number, whole
 from pursue_runtime.reader.contents import StoreError
@@ -58,7 +58,7 @@ class Node:
         self.orders = subscribe("local_mission", String, self.on_order, ending, queue_size=1, buff_size=1 << 20)
         topic = rospy.get_param("~state_topic", STATE)
         states = subscribe_states(self.on_state, ending, "/" + topic.lstrip("/"))
-        Diagnostics(self.report, ending, Links(states, ending=ending, lost=ending.without_master).amend)
+        Diagnostics(self.report, ending, states)
         trouble = self.reader.problem()
         log("err" if trouble else "info", trouble or f"{robot.name} takes missions")
         for node in without_package(nodes, installed):

@@ -16,13 +16,12 @@ from pursue_runtime.doors.opened import DOORS, read_opened
 from pursue_runtime.event_words import EVENTS, FINISH, PLAN, START
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.alarm import Alarm
-from pursue_runtime.nodes.links import Links
+from pursue_runtime.nodes.links import Diagnostics
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import (
     ERROR,
     OK,
     WARN,
-    Diagnostics,
     Ending,
     NodeReport,
     init_node,
@@ -80,7 +79,7 @@ class UI(UIState):
         if self.at_doors.has_some:
             subscribe(DOORS, String, self.on_doors, ending, queue_size=10, tcp_nodelay=True)
         self.pulses = subscribe("/diagnostics", DiagnosticArray, self.on_diagnostics, ending, queue_size=100)
-        Diagnostics(self.report, ending, Links(self.states, self.pulses, ending=ending, lost=self.master_lost).amend)
+        Diagnostics(self.report, ending, self.states, self.pulses, lost=self.master_lost)
 
     # Callbacks --------------------------------------------------------------------------------------------------------
 

@@ -25,7 +25,7 @@ from pursue_runtime.nodes import mission_test, positions, recorder, robot_link
 from pursue_runtime.nodes.communication_manager import CommunicationManager
 from pursue_runtime.nodes.drive_legs import DriveLegs
 from pursue_runtime.nodes.markers import MarkersNode
-from pursue_runtime.nodes.node import ERROR, OK, WARN, master_is_gone
+from pursue_runtime.nodes.node import OK, WARN, master_is_gone
 from pursue_runtime.nodes.pursue_reader import Node as ReaderNode
 from pursue_runtime.nodes.recorder import Bag, Recorder
 from pursue_runtime.nodes.robot_link import RobotLink
@@ -152,7 +152,6 @@ def markers() -> Any:
     for name, number in kinds.items():
         setattr(Marker, name, number)
     made.messages = SimpleNamespace(Marker=Marker)
-    made.membership = SimpleNamespace(source=SimpleNamespace(mission="m1"), refused="", trouble="", counts={})
     return made
 
 
@@ -169,8 +168,6 @@ def test_it_reports_why_it_shows_nothing(markers: Any) -> None:
     assert markers.report()[:3] == (False, WARN, "no state from the observer yet")
     markers.state = STATE
     assert markers.report()[:3] == (True, OK, "running")
-    markers.membership.refused = "state 3"
-    assert markers.report()[:3] == (False, ERROR, "refused state 3")
 
 
 def test_a_position_is_shown_when_it_has_changed(monkeypatch: pytest.MonkeyPatch) -> None:
