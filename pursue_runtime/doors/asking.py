@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Iterable, Optional, Union
+from typing import Dict, List, Mapping, Optional, Tuple, Union
 
 REPEAT = 1.0
 """Seconds after which what has not done what it was asked is asked again."""
@@ -52,12 +52,37 @@ class Asking:
             return self.asked_last
         return float("inf") if self.said == self.asked or self.asked == "" else self.asked_last + REPEAT
 
-    def is_done(self, now: float) -> bool:
-        """Return True if it has done what it was asked."""
-        return self.done_at is not None and now >= self.done_at
+    def is_open(self, now: float) -> bool:
+        """Return True if it counts as open for whoever wants that, having done what it was asked."""
+        return bool(self.asked) and self.done_at is not None and now >= self.done_at
 
 
-def next_moment(several: Iterable[Asking], now: float) -> Optional[float]:
-    """Return when to look again at these, later than now; None: not before the next state or report."""
-    moments = [moment for each in several for moment in (each.ask_at, each.done_at) if moment is not None]
-    return min((moment for moment in moments if now < moment < float("inf")), default=None)
+class Keeper:
+    """Asks doors, or lifts, and takes what they report."""
+
+    def __init__(self, asked: Mapping[str, Asking]) -> None:
+        self._asked = asked
+        self._mission, self._seq = "", -1
+
+    def on_report(self, name: str, said: Optional[Word], now: float) -> None:
+        """Take what one of them reports; None: it says nothing that counts."""
+        self._asked[name].take(said, now)
+
+    def due(self, now: float) -> List[Tuple[str, Word]]:
+        """Return which are to be asked now, and what."""
+        found = []
+        for name, one in self._asked.items():
+            if one.asked is not None and now >= one.ask_at:
+                one.asked_last = now
+                found.append((name, one.asked))
+        return found
+
+    def next_moment(self, now: float) -> Optional[float]:
+        """Return when to look again, later than now; None: not before the next state or report."""
+        moments = (moment for each in self._asked.values() for moment in (each.ask_at, each.done_at))
+        return min((moment for moment in moments if moment is not None and now < moment < float("inf")), default=None)
+
+    def waited_for(self, now: float) -> Dict[str, float]:
+        """Return which are to be open, and are not, and for how many seconds they have been asked."""
+        shut = {name: one for name, one in self._asked.items() if one.asked and not one.is_open(now)}
+        return {name: now - one.asked_since for name, one in shut.items()}

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Collection, Dict, FrozenSet, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Any, Collection, Dict, FrozenSet, Mapping, NamedTuple
 
 from pursue_runtime.data import DataError
-from pursue_runtime.doors.asking import SETTLE, Asking, next_moment
+from pursue_runtime.doors.asking import SETTLE, Asking, Keeper
 from pursue_runtime.doors.opened import Opened
 from pursue_runtime.state import SystemState
 
@@ -40,12 +40,8 @@ class _Door(Asking):
     needed_in: Dict[str, FrozenSet[str]] = field(default_factory=dict)
     wanted_by: FrozenSet[str] = frozenset()
 
-    def is_open(self, now: float) -> bool:
-        """Return True if it counts as open for whoever wants that."""
-        return bool(self.asked) and self.is_done(now)
 
-
-class DoorKeeper:
+class DoorKeeper(Keeper):
     """Has each door open as long as somebody who asks for it is on a way through it, and closed otherwise.
 
     A door counts as open for whoever has asked when it reports that, after it was asked to open. A door is never asked
@@ -58,7 +54,7 @@ class DoorKeeper:
             name: _Door(needed_in={agent: frozenset(locations) for agent, locations in door.asked_by.items()})
             for name, door in doors.items()
         }
-        self._mission, self._seq = "", -1
+        super().__init__(self._doors)
 
     def on_state(self, state: SystemState, now: float) -> None:
         """Take a state of the mission."""
@@ -70,29 +66,7 @@ class DoorKeeper:
             if door.wanted_by or door.asked is not None or state.seq > 0:
                 door.ask(bool(door.wanted_by), now)
 
-    def on_report(self, door: str, is_open: Optional[bool], now: float) -> None:
-        """Take what a door reports: open, or not; None: it says nothing that counts."""
-        self._doors[door].take(is_open, now)
-
-    def due(self, now: float) -> List[Tuple[str, bool]]:
-        """Return the doors that are to be asked now, and whether to open."""
-        found = []
-        for name, door in self._doors.items():
-            if now >= door.ask_at:
-                door.asked_last = now
-                found.append((name, bool(door.asked)))
-        return found
-
-    def next_moment(self, now: float) -> Optional[float]:
-        """Return when to look again, later than now; None: not before the next state or report."""
-        return next_moment(self._doors.values(), now)
-
     def opened(self, now: float) -> Opened:
         """Return for whom which door is open now."""
         doors = {name: door.wanted_by for name, door in self._doors.items() if door.is_open(now)}
         return Opened(self._mission, self._seq, doors)
-
-    def waited_for(self, now: float) -> Dict[str, float]:
-        """Return the doors that are to be open and are not, and for how many seconds they have been asked."""
-        shut = {name: door for name, door in self._doors.items() if door.wanted_by and not door.is_open(now)}
-        return {name: now - door.asked_since for name, door in shut.items()}

@@ -11,14 +11,14 @@ from __future__ import annotations
 
 import threading
 from functools import partial
-from typing import Any, Dict, Mapping, Optional, Union
+from typing import Any, Mapping, Optional
 
 import rospy
 from std_msgs.msg import String
 
 from pursue_runtime.arguments import CONFIG
 from pursue_runtime.data import Package
-from pursue_runtime.doors.asking import Word
+from pursue_runtime.doors.asking import Keeper
 from pursue_runtime.doors.keeper import DoorKeeper, read_doors
 from pursue_runtime.doors.lifts import ABOARD, IS_ABOARD, LiftKeeper, read_lifts
 from pursue_runtime.doors.opened import DOORS, NONE_OPENED, opened_text
@@ -57,21 +57,16 @@ class DoorsNode:
         self.within = {name: door.within for name, door in doors.items()}
         self.within.update({name: min(lift.within, lift.takes) for name, lift in lifts.items()})
         self.doors, self.lifts = DoorKeeper(doors), LiftKeeper(lifts)
-        self.keepers: Dict[str, Union[DoorKeeper, LiftKeeper]] = {
-            **dict.fromkeys(doors, self.doors), **dict.fromkeys(lifts, self.lifts)
-        }
         self.lock = threading.RLock()
         self.state: Optional[SystemState] = None
         self.opened = NONE_OPENED
         self.publisher = rospy.Publisher(DOORS, String, queue_size=10, latch=True, tcp_nodelay=True)
         self.alarm = Alarm(self.act, self.ending)
         seed = whole(given, "seed", 0, least=None)
-        self.links = {
-            name: linked(
-                one, partial(self.seconds, name), f"{seed}/{name}", partial(self.on_report, name), self.ending
-            )
-            for name, one in settings.items()
-        }
+        self.ask = {}
+        for name, one in settings.items():
+            on_report = partial(self.on_report, self.doors if name in doors else self.lifts, name)
+            self.ask[name] = linked(one, partial(self.seconds, name), f"{seed}/{name}", on_report, self.ending)
         if lifts:
             subscribe(ABOARD, String, self.on_aboard, self.ending, queue_size=100)
         self.membership.follow(self.on_state, self.report)
@@ -91,16 +86,16 @@ class DoorsNode:
             if not self.membership.takes(state):
                 return
             self.state = state
-            for keeper in (self.doors, self.lifts):
-                keeper.on_state(state, rospy.get_time())
+            self.doors.on_state(state, rospy.get_time())
+            self.lifts.on_state(state, rospy.get_time())
             self.act()
         if state.status in (WON, LOST, STOPPED):
             self.ending.end(0 if state.status == WON else 1)
 
-    def on_report(self, name: str, said: Any) -> None:
+    def on_report(self, keeper: Keeper, name: str, said: Any) -> None:
         """Handle what a door, or a lift, reports."""
         with self.lock:
-            self.keepers[name].on_report(name, said, rospy.get_time())
+            keeper.on_report(name, said, rospy.get_time())
             self.act()
 
     def on_aboard(self, message: String) -> None:
@@ -117,9 +112,8 @@ class DoorsNode:
         """Ask the doors and lifts that are to be asked, publish for whom they are open, and sleep until more is due."""
         with self.lock:
             now = rospy.get_time()
-            due: Dict[str, Word] = {**dict(self.doors.due(now)), **dict(self.lifts.due(now))}
-            for name, what in due.items():
-                self.links[name].ask(what)
+            for name, what in (*self.doors.due(now), *self.lifts.due(now)):
+                self.ask[name](what)
                 rospy.logdebug("%s is asked: %s", name, what)
             doors, lifts = self.doors.opened(now), self.lifts.opened(now)
             opened = doors._replace(doors={**doors.doors, **lifts.doors})
@@ -136,8 +130,7 @@ class DoorsNode:
             shut = self.doors.waited_for(now)
             late = sorted(door for door, seconds in shut.items() if seconds > self.seconds(door))
             late += sorted(self.lifts.late(now, self.unit))
-            waited_for = [*shut, *self.lifts.waited_for(now)]
-            values: Dict[str, object] = {"waited_for": " ".join(waited_for)}
+            values = {"waited_for": " ".join([*shut, *self.lifts.waited_for(now)])}
         if state is None:
             return NodeReport(False, WARN, NO_STATE, values)
         if late:
