@@ -207,10 +207,6 @@ class Page:
         self._answers = [answer, *self._answers][:SHOWN_ANSWERS]
         self.note(at, f"{order}: {answer['text']}", GOOD if accepted else BAD)
 
-    def trouble(self, at: float, text: str) -> None:
-        """Adds to the log what a node says of its robots."""
-        self.note(at, in_words(text, self._model.shown), BAD)
-
     def note(self, at: float, text: str, kind: str = NOTE, word: str = "") -> Dict[str, Any]:
         """Adds an entry to the log, and returns it."""
         self._number += 1
