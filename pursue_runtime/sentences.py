@@ -10,6 +10,9 @@ from __future__ import annotations
 from string import Formatter
 from typing import Callable, Dict, Iterable, List, Mapping, Optional, Protocol, Set, Tuple
 
+Log = Callable[[str, str], None]
+"""Takes a level (debug, info, warn, err) and a sentence."""
+
 
 class Names(Protocol):
     """What people read for a name: a model's labels, or MARKED."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import sys
 from functools import partial
-from typing import Callable, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, Optional, Sequence, Tuple
 
 import rospy
 from pursue_msgs.msg import AutomatonLocation, ClockValue, Variable
@@ -19,6 +19,9 @@ from pursue_runtime.parameters import ParameterError, flag
 from pursue_runtime.state import ENDED, LISTS, WON, SystemState, state_lines
 from pursue_runtime.state_checks import names_problem, state_problem
 
+SAME = ("seq", "mission", "status", "reason", "event", "agent", "commanded", "plan")
+"""The fields that a message has as a state has them."""
+
 THROTTLE = 10.0
 """Seconds for which the log has one line about messages that are no states."""
 
@@ -26,58 +29,34 @@ THROTTLE = 10.0
 def message_of(state: SystemState) -> Message:
     """Return the state as a message."""
     return Message(
-        seq=state.seq,
         stamp=rospy.Time.from_sec(state.stamp),
         time_unit=state.unit,
-        mission=state.mission,
-        status=state.status,
-        reason=state.reason,
-        event=state.event,
-        agent=state.agent,
-        commanded=state.commanded,
-        plan=state.plan,
         automata=[AutomatonLocation(name, location) for name, location in state.locations.items()],
         variables=[Variable(name, value) for name, value in state.values.items()],
         clocks=[ClockValue(name, value) for name, value in state.clocks.items()],
+        **{key: getattr(state, key) for key in SAME},
         **{key: list(getattr(state, key)) for key in LISTS},
     )
 
 
 def state_of(message: Message) -> SystemState:
     """Return the state that a message holds. Raises ValueError for one that no observer publishes."""
-    for what, entries in (("automata", message.automata), ("variables", message.variables), ("clocks", message.clocks)):
-        _check(what, [each.name for each in entries])
-    agents = {key: getattr(message, key) for key in LISTS}
-    for key, names in agents.items():
-        if names:
-            _check(key, names)
+    lists: Dict[str, Any] = {key: tuple(getattr(message, key)) for key in LISTS}
+    parts = {key: [each.name for each in getattr(message, key)] for key in ("automata", "variables", "clocks")}
+    problems = [names_problem(key, names) for key, names in (*parts.items(), *lists.items()) if names]
     state = SystemState(
-        seq=message.seq,
         stamp=message.stamp.to_sec(),
+        unit=message.time_unit,
         locations={automaton.name: automaton.location for automaton in message.automata},
         values={variable.name: variable.value for variable in message.variables},
         clocks={clock.name: clock.value for clock in message.clocks},
-        event=message.event,
-        agent=message.agent,
-        commanded=bool(message.commanded),
-        status=message.status,
-        reason=message.reason,
-        unit=message.time_unit,
-        plan=message.plan,
-        mission=message.mission,
-        **{key: tuple(names) for key, names in agents.items()},
+        **{key: getattr(message, key) for key in SAME},
+        **lists,
     )
-    problem = state_problem(state)
+    problem = next(filter(None, problems), "") or state_problem(state)
     if problem:
         raise ValueError(problem)
     return state
-
-
-def _check(what: str, names: Sequence[str]) -> None:
-    """Raise ValueError where names are wrong."""
-    problem = names_problem(what, names)
-    if problem:
-        raise ValueError(problem)
 
 
 def subscribe_states(

@@ -28,6 +28,7 @@ from pursue_runtime.observer.records import (
     read_mark,
     read_records,
 )
+from pursue_runtime.sentences import Log
 from pursue_runtime.state import ENDED, WAITING, SystemState
 
 ADOPTED = "adopted"
@@ -63,8 +64,6 @@ DELAY = 0.01
 
 MAX_JOURNALS = 20
 """So many journals of a scenario are kept."""
-
-Log = Callable[[str, str], None]
 
 
 class Journal:

@@ -32,7 +32,8 @@ from pursue_runtime.model import Model
 from pursue_runtime.poses import POSES, read_poses
 from pursue_runtime.rate_limited_log import RateLimitedLog
 from pursue_runtime.reader.contents import StoreError, StoreState, is_signed, manifest
-from pursue_runtime.reader.store import Log, Store
+from pursue_runtime.reader.store import Store
+from pursue_runtime.sentences import Log
 from pursue_runtime.state import LATE, LIVE, SystemState, older
 from pursue_runtime.strategy import Strategy, read_cover, read_strategies
 
