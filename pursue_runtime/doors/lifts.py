@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Set, Tuple
 
 from pursue_runtime.data import DataError
-from pursue_runtime.doors.asking import SETTLE, Asking, Keeper
+from pursue_runtime.doors.keeper import SETTLE, Asking, Keeper
 from pursue_runtime.doors.opened import Opened
 from pursue_runtime.state import SystemState
 

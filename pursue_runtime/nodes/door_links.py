@@ -12,7 +12,7 @@ import rospy
 from std_msgs.msg import Bool, Int32, String
 
 from pursue_runtime.data import DataError
-from pursue_runtime.doors.asking import Word
+from pursue_runtime.doors.keeper import Word
 from pursue_runtime.doors.lifts import NOWHERE
 from pursue_runtime.doors.settings import (
     RMF_CLOSED,
@@ -31,10 +31,10 @@ from pursue_runtime.nodes.node import Ending, subscribe
 from pursue_runtime.nodes.robot_link import needed
 
 Report = Callable[[Any], None]
-"""Takes what it is, as an `asking.Word`; None: that is not known."""
+"""Takes what it is, as an `keeper.Word`; None: that is not known."""
 
 Ask = Callable[[Any], None]
-"""Asks a door, or a lift, for an `asking.Word`; it may be asked the same again."""
+"""Asks a door, or a lift, for an `keeper.Word`; it may be asked the same again."""
 
 
 def _ask_on_own_topics(

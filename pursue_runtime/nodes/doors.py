@@ -18,8 +18,7 @@ from std_msgs.msg import String
 
 from pursue_runtime.arguments import CONFIG
 from pursue_runtime.data import Package
-from pursue_runtime.doors.asking import Keeper
-from pursue_runtime.doors.keeper import DoorKeeper, read_doors
+from pursue_runtime.doors.keeper import DoorKeeper, Keeper, read_doors
 from pursue_runtime.doors.lifts import ABOARD, IS_ABOARD, LiftKeeper, read_lifts
 from pursue_runtime.doors.opened import DOORS, NONE_OPENED, opened_text
 from pursue_runtime.doors.settings import read_door_settings, read_lift_settings

@@ -7,8 +7,7 @@ from typing import Any, Dict, List, Optional, Tuple, Union
 
 from pursue_gen.tools.simulation.connections import RECONNECTION, Connections
 from pursue_gen.tools.simulation.event_queue import Action, EventQueue, Timer
-from pursue_gen.tools.simulation.faults import Crash, FaultPlan
-from pursue_gen.tools.simulation.junk import junk_word
+from pursue_gen.tools.simulation.faults import Crash, FaultPlan, junk_word
 from pursue_gen.tools.simulation.nodes import ControllerNode, ObserverNode, PeopleNode, to_process
 from pursue_gen.tools.simulation.opponents import Opponent, kind_in_mission
 from pursue_gen.tools.simulation.outcome import FAILED, GOAL, HELD, SAFE, Outcome, Settings, described

@@ -9,8 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_runtime.data import DataError
-from pursue_runtime.doors.asking import REPEAT, SETTLE, Word
-from pursue_runtime.doors.keeper import DoorData, DoorKeeper, read_doors
+from pursue_runtime.doors.keeper import REPEAT, SETTLE, DoorData, DoorKeeper, Word, read_doors
 from pursue_runtime.state import RUNNING, WAITING, SystemState
 
 WAYS = ("going_hall_to_lab", "going_lab_to_hall")

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_runtime.data import DataError
-from pursue_runtime.doors.asking import REPEAT, SETTLE, Word
+from pursue_runtime.doors.keeper import REPEAT, SETTLE, Word
 from pursue_runtime.doors.lifts import NOWHERE, LiftData, LiftKeeper, read_lifts
 from pursue_runtime.state import RUNNING, WAITING, SystemState
 

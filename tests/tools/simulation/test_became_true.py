@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from pursue_gen.tools.simulation.junk import JUNK, junk_word
+from pursue_gen.tools.simulation.faults import JUNK, junk_word
 from pursue_gen.tools.simulation.recorder import BecameTrue
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import SystemState
