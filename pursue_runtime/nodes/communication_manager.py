@@ -17,7 +17,7 @@ from pursue_runtime.arguments import KEYS, LOOPBACK, Argument, port
 from pursue_runtime.bundle import LIMIT, KeyFolder
 from pursue_runtime.data import Package
 from pursue_runtime.folders import keys_folder
-from pursue_runtime.manager.background import Background, ServerError, Service, bind
+from pursue_runtime.http_server import Background, ServerError, Service, bind
 from pursue_runtime.manager.forwarder import Forwarder
 from pursue_runtime.manager.manager import LOCAL_MISSION, MISSION_STATUS, Manager, RequestLog, topic_names
 from pursue_runtime.manager.server import Limits, Server, tls

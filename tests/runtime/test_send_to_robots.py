@@ -20,7 +20,7 @@ from pursue_gen.tools.transport.send_checks import fits, kept_by_all, previous
 from pursue_gen.tools.transport.sender import Sent, look, send, wait
 from pursue_runtime import bundle as mission_bundle
 from pursue_runtime.bundle import KeyFolder
-from pursue_runtime.manager.background import Background, bind
+from pursue_runtime.http_server import Background, bind
 from pursue_runtime.manager.manager import Manager, RequestLog
 from pursue_runtime.manager.server import Limits, Server
 from pursue_runtime.manifest import OWN

@@ -8,7 +8,7 @@ from typing import Any, Callable, Dict, Iterator, List
 
 import pytest
 
-from pursue_runtime.manager.background import Background, bind
+from pursue_runtime.http_server import Background, bind
 from pursue_runtime.manager.forwarder import MAX_LINE, Forwarder
 from pursue_runtime.manager.manager import RequestLog
 from tests.waiting import PATIENCE, connected, until

@@ -18,7 +18,7 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import NameOID
 
 from pursue_runtime import bundle as mission_bundle
-from pursue_runtime.manager.background import ServerError, bind
+from pursue_runtime.http_server import ServerError, bind
 from pursue_runtime.manager.manager import LONGEST_HEADER
 from pursue_runtime.manager.server import Limits, tls
 from tests.runtime.manager_stage import ROBOT, Desk, Robot, ask, exchange, head, parse, send
