@@ -15,6 +15,8 @@ from tornado.netutil import bind_sockets
 from pursue_runtime.needs import TORNADO, require
 from pursue_runtime.slots import Slots
 
+require(TORNADO)
+
 CAPTURED_LOGGERS = ("tornado", "asyncio")  # loggers that write a line for each malformed request
 
 
@@ -113,9 +115,6 @@ class _Log(logging.Handler):
             return
         problem = record.exc_info[1] if record.exc_info else None
         self._trouble("errors", f"{record.name}: {record.getMessage()[:500]} {problem!r}"[:1000])
-
-
-require(TORNADO)
 
 
 class LimitedServer(HTTPServer):
