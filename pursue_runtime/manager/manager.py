@@ -214,7 +214,7 @@ def mission_message(order_text: str, body: bytes) -> str:
 # Counts and log -------------------------------------------------------------------------------------------------------
 
 
-class RequestLog:
+class RequestLog(RateLimitedLog):
     """Counts requests by kind; what clients cause is logged at a limited rate.
 
     `warn(text)` and `note(text)` write to the log, `clock()` returns seconds.
@@ -223,21 +223,10 @@ class RequestLog:
     def __init__(
         self, warn: Callable[[str], None], note: Callable[[str], None], clock: Callable[[], float] = time.monotonic
     ) -> None:
-        self._info, self._clock = note, clock
-        self._log = RateLimitedLog(warn)
-
-    def count(self, word: str, text: str = "") -> None:
-        """Count an event; `text`, if given, is logged unless a line was logged just before."""
-        if text:
-            self._log.count(word, text, self._clock())
-        else:
-            self._log.counts[word] = self._log.counts.get(word, 0) + 1
+        super().__init__(warn, clock)
+        self._info = note
 
     def log(self, word: str, text: str) -> None:
         """Count an event and log it in any case: only trusted orders cause it."""
         self.count(word)
         self._info(text)
-
-    def counts(self) -> Dict[str, int]:
-        """So many of each so far."""
-        return dict(self._log.counts)

@@ -123,7 +123,7 @@ class CommunicationManager:
         values: Dict[str, object] = {"robot": self.manager.robot, "port": self.server.port}
         if self.forwarder is not None:
             values["subscribers"] = self.forwarder.subscribers
-        values.update(sorted(self.record.counts().items()))
+        values.update(sorted(dict(self.record.counts).items()))
         trusted = self.manager.trusts_any_key and self.manager.reader_connected
         return NodeReport(trusted, {"error": ERROR, "warn": WARN}.get(how, OK), sentence, values)
 

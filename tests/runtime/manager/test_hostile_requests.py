@@ -361,11 +361,11 @@ def test_thousands_of_hostile_requests_leave_nothing_and_a_serving_robot(tmp_pat
         for action in ("prepare", "commit"):
             obeyed(robot, desk, action, second)
         assert json.loads((place / "state.json").read_bytes())["current"] == second.digest
-        assert "errors" not in robot.record.counts(), robot.lines
+        assert "errors" not in robot.record.counts, robot.lines
         assert len(robot.lines) <= 2 + (time.monotonic() - begun) / 10, "strangers do not fill the log"
         print(f"\n{REQUESTS} requests and {opened} drips: {growth / 2**20:.1f} MiB more, log lines {len(robot.lines)}")
         print("\n".join(f"{kind}: {counts[kind]}" for kind in sorted(counts)))
-        print(robot.record.counts())
+        print(robot.record.counts)
     finally:
         robot.close()
         robot.reader.store.close()
