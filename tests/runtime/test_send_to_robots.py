@@ -16,7 +16,7 @@ from pursue_gen.solving.inputs import game_of
 from pursue_gen.solving.request import SolveRequest, solution_of
 from pursue_gen.tools.transport.bundles import make_mission, sign
 from pursue_gen.tools.transport.client import Robot
-from pursue_gen.tools.transport.send_checks import fits, kept_by_all, previous
+from pursue_gen.tools.transport.send_report import fits, kept_by_all, previous
 from pursue_gen.tools.transport.sender import Sent, look, send, wait
 from pursue_runtime import bundle as mission_bundle
 from pursue_runtime.bundle import KeyFolder

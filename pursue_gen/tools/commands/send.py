@@ -122,7 +122,7 @@ def _send(
 ) -> Sent:
     """Sends a mission's bundle to the robots, with a line of progress for each."""
     from pursue_gen.tools.commands.uploads import upload_lines
-    from pursue_gen.tools.transport.send_checks import fits
+    from pursue_gen.tools.transport.send_report import fits
     from pursue_gen.tools.transport.sender import send as send_to
 
     packages = {path.split("/")[0] for path in manifest.files}
@@ -133,8 +133,7 @@ def _send(
 
 def _send_back(mission: Optional[str], robots: Sequence[Robot], private: Ed25519PrivateKey, as_json_: bool) -> Sent:
     """Orders the robots back to an earlier mission; where one is out of reach, prints the table and raises."""
-    from pursue_gen.tools.transport.send_checks import kept_by_all, mission_digest, previous
-    from pursue_gen.tools.transport.send_report import all_reached, with_activity
+    from pursue_gen.tools.transport.send_report import all_reached, kept_by_all, mission_digest, previous, with_activity
     from pursue_gen.tools.transport.sender import look
     from pursue_gen.tools.transport.sender import send as send_to
 
