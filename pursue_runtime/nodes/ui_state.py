@@ -15,12 +15,11 @@ from pursue_runtime.model import Model
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import Ending
 from pursue_runtime.nodes.order_desk import UIOrders
-from pursue_runtime.ui.at_doors import AtDoors
 from pursue_runtime.ui.mission_view import Environment, MissionView, Readiness
 from pursue_runtime.ui.options import Options
 from pursue_runtime.ui.strategies import strategies_of
 from pursue_runtime.ui.terminal import Terminal
-from pursue_runtime.ui.turns import Turns
+from pursue_runtime.ui.waits import AtDoors, Turns
 
 GATHERING, READY, STARTING, RUNNING = "waiting for the nodes", "ready", "starting", "running"
 

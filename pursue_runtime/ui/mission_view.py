@@ -27,8 +27,7 @@ from pursue_runtime.sentences import Told, in_words
 from pursue_runtime.simulator.simulator import report_word, reports
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Entry, Plans, Strategy
-from pursue_runtime.ui.at_doors import AtDoors
-from pursue_runtime.ui.turns import Turns
+from pursue_runtime.ui.waits import AtDoors, Turns
 from pursue_runtime.vocabulary import deed, instruction, is_fact, said_at_start, sentence, where
 from pursue_runtime.zones import due
 

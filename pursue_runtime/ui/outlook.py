@@ -20,7 +20,7 @@ from pursue_runtime.ui.course import Step, course, first_commands, is_certain, n
 from pursue_runtime.ui.mission_view import PossibleWord
 from pursue_runtime.ui.statuses import Status
 from pursue_runtime.ui.strategies import Strategies
-from pursue_runtime.ui.turns import Turns
+from pursue_runtime.ui.waits import Turns
 from pursue_runtime.vocabulary import deed, place
 
 _NEXT = "next: "

@@ -16,7 +16,6 @@ from pursue_runtime.poses import read_poses
 from pursue_runtime.sentences import Told, in_words, listed
 from pursue_runtime.simulator.simulator import end_window, report_word
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState
-from pursue_runtime.ui.at_doors import AtDoors
 from pursue_runtime.ui.floor import Floor
 from pursue_runtime.ui.lanes import Lanes
 from pursue_runtime.ui.mission_view import possible_words, tasks
@@ -24,6 +23,7 @@ from pursue_runtime.ui.outlook import Outlook
 from pursue_runtime.ui.promise import NOTHING, Guarantee, Promise, objectives_now, with_written
 from pursue_runtime.ui.statuses import Status, status_texts
 from pursue_runtime.ui.strategies import Strategies
+from pursue_runtime.ui.waits import AtDoors
 from pursue_runtime.vocabulary import awaited, begin_of, deed, place, said_at_start, sentence, value_found, where
 
 MAX_ENTRIES = 300  # entries of the log

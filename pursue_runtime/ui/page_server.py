@@ -9,7 +9,6 @@ from typing import Any, Dict, List, Mapping, Optional, Protocol, Sequence, Tuple
 from pursue_runtime.missions import Source
 from pursue_runtime.model import Model
 from pursue_runtime.parameters import ParameterError
-from pursue_runtime.ui.at_doors import AtDoors
 from pursue_runtime.ui.floor import read_floor
 from pursue_runtime.ui.mission_view import reporters
 from pursue_runtime.ui.options import Options
@@ -18,6 +17,7 @@ from pursue_runtime.ui.promise import read_promise
 from pursue_runtime.ui.requests import PageRequest, read_request
 from pursue_runtime.ui.statuses import read_statuses
 from pursue_runtime.ui.strategies import Strategies
+from pursue_runtime.ui.waits import AtDoors
 
 STATIC = os.path.join(os.path.dirname(os.path.realpath(__file__)), "static")
 """The folder of the page's files."""

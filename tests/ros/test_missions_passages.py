@@ -22,7 +22,7 @@ from pursue_gen.workspace import Options, write_workspace
 from pursue_runtime.model import Model
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import read_strategies
-from pursue_runtime.ui.turns import Turns
+from pursue_runtime.ui.waits import Turns
 from tests.waiting import PATIENCE
 
 pytestmark = pytest.mark.ros

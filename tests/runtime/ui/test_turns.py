@@ -12,7 +12,7 @@ from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui.environment import TraceEnvironment
 from pursue_runtime.ui.mission_view import MissionView
 from pursue_runtime.ui.outlook import Outlook
-from pursue_runtime.ui.turns import Turns
+from pursue_runtime.ui.waits import Turns
 from tests.runtime.models import model_data, mover, state
 
 
