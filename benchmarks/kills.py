@@ -43,7 +43,7 @@ from pursue_gen.tools.replay.finding import FAULT, UNRECORDED, WORLD
 from pursue_gen.tools.replay.game import Game, from_workspace
 from pursue_gen.tools.replay.journal import Journal
 from pursue_runtime.event_words import EVENTS, FINISH
-from pursue_runtime.observer.mark import MARK
+from pursue_runtime.observer.records import MARK
 
 SCENARIOS = ("thesis/scenario_1", "thesis/scenario_4", "thesis/catch_the_thief", "patterns/strict_ordered_visit")
 LONGEST = 240.0

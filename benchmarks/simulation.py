@@ -30,10 +30,9 @@ from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.tools.simulation.faults import read_faults
-from pursue_gen.tools.simulation.make import make_case
 from pursue_gen.tools.simulation.mission import simulate_mission
 from pursue_gen.tools.simulation.outcome import FAILED, Settings
-from pursue_gen.tools.simulation.runs import Case, MissionRunner
+from pursue_gen.tools.simulation.runs import Case, MissionRunner, make_case
 from pursue_runtime.state import LOST
 
 ROOT = Path(__file__).resolve().parent.parent

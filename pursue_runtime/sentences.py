@@ -1,4 +1,5 @@
-"""What nodes say of a mission, on its way to people: a sentence in which the names of the model are marked.
+"""What nodes say of a mission, and of what is wrong with robots, on its way to people: a sentence in which the names of
+the model are marked.
 
 Marks are those of Python's format strings: `{bot1} is late on its way to {b}`. Who shows a sentence to people puts the
 names there, or their labels; all other words stay as they are.
@@ -7,7 +8,10 @@ names there, or their labels; all other words stay as they are.
 from __future__ import annotations
 
 from string import Formatter
-from typing import Callable, Iterable, List, Optional, Protocol, Set, Tuple
+from typing import Callable, Dict, Iterable, List, Mapping, Optional, Protocol, Set, Tuple
+
+Log = Callable[[str, str], None]
+"""Takes a level (debug, info, warn, err) and a sentence."""
 
 
 class Names(Protocol):
@@ -81,3 +85,27 @@ def _parts(sentence: str) -> Optional[List[Tuple[str, str]]]:
     if any(name is not None and (spec or how or not name.isidentifier()) for _, name, spec, how in parts):
         return None
     return [(text, name or "") for text, name, _, _ in parts]
+
+
+PREFIX = "robot "
+"""Before the name of a robot: the key of what is wrong with it among a controller's values."""
+
+
+def trouble_values(troubles: Mapping[str, str]) -> Dict[str, object]:
+    """Return the values for /diagnostics of what is wrong with these robots."""
+    return {f"{PREFIX}{robot}": text for robot, text in troubles.items()}
+
+
+class Troubles:
+    """Finds what is new in the values of controllers, which come once a second."""
+
+    def __init__(self) -> None:
+        self._known: Dict[str, Dict[str, str]] = {}
+
+    def take(self, node: str, values: Mapping[str, str], reason: str) -> List[str]:
+        """Return a sentence for each robot with which something is wrong that the values of this node did not say
+        before, and that is not in the `reason` of the state."""
+        found = {key[len(PREFIX) :]: as_sentence(text) for key, text in values.items() if key.startswith(PREFIX)}
+        known, self._known[node] = self._known.get(node, {}), found
+        news = {robot: text for robot, text in found.items() if text and known.get(robot) != text}
+        return [f"{marked(robot)} {text}" for robot, text in news.items() if text not in reason]

@@ -33,9 +33,8 @@ from pursue_gen.tools.transport.robots_file import read_robots
 from pursue_gen.workspace.machines import read_machines
 from pursue_runtime.bundle import read_keys
 from pursue_runtime.data import DataError, read_data
-from pursue_runtime.ui.environment import make_player
+from pursue_runtime.ui.environment import TraceError, make_player
 from pursue_runtime.ui.options import Options
-from pursue_runtime.ui.trace import TraceError
 
 ROOT = Path(__file__).resolve().parents[1]
 PATIENCE = 300
@@ -188,9 +187,8 @@ OTHERS = {
     "pursue_runtime/missions.py": "the robot's own store of missions",
     "pursue_runtime/named_files.py": "the reader",
     "pursue_runtime/nodes/mission_test.py": "the workspace's own test",
-    "pursue_runtime/nodes/process.py": "facts of the system",
-    "pursue_runtime/observer/mark.py": "the mark beside the observer's own journal",
-    "pursue_runtime/observer/records.py": "the observer's own journal",
+    "pursue_runtime/nodes/node.py": "facts of the system",
+    "pursue_runtime/observer/records.py": "the observer's own journal, and its mark",
     "pursue_runtime/reader/contents.py": "the robot's own store of missions",
     "pursue_runtime/ui/floor.py": "the workspace's own picture",
     "pursue_runtime/ui/verdict.py": "a file of two lines, for another of our programs",

@@ -59,12 +59,12 @@ FIXED = {
     "tools/play/state.py": ["GRAIN"],
     "tools/replanning/request.py": ["_LONGEST"],
     "tools/simulation/connections.py": ["DECIMALS"],
-    "tools/simulation/make.py": ["_LONGEST"],
     "tools/simulation/mission.py": ["START", "HEARTBEAT"],
     "tools/simulation/nodes.py": ["TICK"],
     "tools/simulation/opponents.py": ["FIRST"],
     "tools/simulation/recorder.py": ["EPSILON"],
     "tools/simulation/remaining.py": ["FOREVER"],
+    "tools/simulation/runs.py": ["_LONGEST"],
     "tools/simulation/world.py": ["INSIDE"],
 }
 """Not tuned: marks (none, never), limits of formats and of types, rounding, how much is shown; by the first name."""

@@ -57,8 +57,7 @@ def simulate(
     """
     from pursue_gen.tools.simulation.cluster import cluster, outcomes_on
     from pursue_gen.tools.simulation.faults import read_faults
-    from pursue_gen.tools.simulation.make import make_case
-    from pursue_gen.tools.simulation.runs import simulate
+    from pursue_gen.tools.simulation.runs import make_case, simulate
 
     kinds = read_faults(faults)
     check_words(opponent=opponent)

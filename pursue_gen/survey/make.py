@@ -29,7 +29,7 @@ from pursue_gen.workspace.levels import Level, check_levels, on_level
 from pursue_gen.workspace.map_check import check_spots
 from pursue_gen.workspace.map_spots import with_poses, with_spots
 from pursue_gen.workspace.robot_size import Sizes
-from pursue_runtime.controller.frames import STOREY
+from pursue_runtime.controller.whereabouts import STOREY
 
 MOST_PLACES = 200
 """More places than that take too long and too much memory."""

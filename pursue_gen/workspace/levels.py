@@ -21,7 +21,7 @@ from pursue_gen.drawing.ground import Ground, read_ground
 from pursue_gen.files import compose_yaml, read_text, span_of
 from pursue_gen.language.scenario import Pose, Scenario
 from pursue_runtime.bounded import BadText, node_value
-from pursue_runtime.controller.frames import STOREY
+from pursue_runtime.controller.whereabouts import STOREY
 
 _HINT = "name each level with its map: levels: {L1: {map: floor1.yaml, elevation: 0}, …}"
 _NAME = re.compile(r"\w+", re.ASCII)  # it stands in names of files and frames

@@ -13,7 +13,7 @@ from pursue_gen.diagnostics import Diagnostic, counted, warning
 from pursue_gen.drawing.layout import poses, yaw_of
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.scenario import Poi, Pose, Scenario
-from pursue_runtime.controller.frames import STOREY
+from pursue_runtime.controller.whereabouts import STOREY
 
 SPOT_DISTANCE = 0.8
 """Metres between the robots at one place, by default: room for two robots of the size of a Turtlebot."""

@@ -10,13 +10,10 @@ from pursue_runtime.data import DataError, reading
 from pursue_runtime.event_words import Word
 from pursue_runtime.missions import Missions, Source
 from pursue_runtime.poses import POSES, Poses, read_poses
+from pursue_runtime.sentences import Log
 from pursue_runtime.state import ENDED, LIVE, WAITING, SystemState
-from pursue_runtime.state_checks import strategy_problem
-from pursue_runtime.state_filter import OLD, OTHER, REFUSED, StateFilter
+from pursue_runtime.state_checks import OLD, OTHER, REFUSED, StateFilter, strategy_problem
 from pursue_runtime.strategy import Strategy
-
-Log = Callable[[str, str], None]
-"""Takes a level (info, warn, err) and a sentence."""
 
 
 class MissionPart(NamedTuple):

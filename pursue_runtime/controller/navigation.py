@@ -5,11 +5,10 @@ Times are seconds of ROS time, `real` of the monotonic clock; distances are metr
 
 from __future__ import annotations
 
-from typing import Callable, List, Optional, Sequence, Tuple
+from typing import List, Optional, Sequence, Tuple
 
 from pursue_runtime.controller.answers import meaning_of
 from pursue_runtime.controller.goal import CANCELLED, OVER, SUCCEEDED, Answer, Goal, GoalTracker, Halt, Movement
-from pursue_runtime.controller.reports import RepeatedReport
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.trip import Trip
 from pursue_runtime.controller.view import Due, View
@@ -19,13 +18,11 @@ from pursue_runtime.doors.opened import NONE_OPENED
 from pursue_runtime.event_words import BACK, DISPLACED, FAILED, HELD, RESUME, RobotReport, Word
 from pursue_runtime.locations import is_action
 from pursue_runtime.orders import Order
-from pursue_runtime.sentences import in_words, marked
+from pursue_runtime.resend import RepeatedReport
+from pursue_runtime.sentences import Log, in_words, marked
 
 GRACE = 2.0
 """Seconds for which the position of a robot may be missing, or the robot may move about, before that is reported."""
-
-Log = Callable[[str, str], None]
-"""Takes a level (info, warn, err) and a sentence."""
 
 
 class Navigation:

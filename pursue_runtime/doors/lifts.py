@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Set, Tuple
 
 from pursue_runtime.data import DataError
-from pursue_runtime.doors.asking import SETTLE, Asking, next_moment
+from pursue_runtime.doors.keeper import SETTLE, Asking, Keeper
 from pursue_runtime.doors.opened import Opened
 from pursue_runtime.state import SystemState
 
@@ -97,7 +97,7 @@ class _Lift(Asking):
         return next((ride.floor for ride in (*in_door, *aboard, *self.rides.values())), NOWHERE)
 
 
-class LiftKeeper:
+class LiftKeeper(Keeper):
     """Has each lift come to who waits for it, and go to where who is in it rides; it is left alone otherwise.
 
     Its door counts as open for somebody at a floor when it reports that after it was asked to come there. It is never
@@ -108,7 +108,7 @@ class LiftKeeper:
     def __init__(self, lifts: Mapping[str, LiftData]) -> None:
         self._data = lifts
         self._lifts = {name: _Lift() for name in lifts}
-        self._mission, self._seq = "", -1
+        super().__init__(self._lifts)
 
     def on_state(self, state: SystemState, now: float) -> None:
         """Take a state of the mission."""
@@ -125,10 +125,6 @@ class LiftKeeper:
             if lift.rides or lift.asked is not None or state.seq > 0:
                 lift.ask(lift.target, now)
 
-    def on_report(self, name: str, floor: Optional[str], now: float) -> None:
-        """Take the floor at which a lift is open; NOWHERE: at none; None: it says nothing that counts."""
-        self._lifts[name].take(floor, now)
-
     def on_aboard(self, agent: str, as_of: Optional[int], now: float) -> None:
         """Take that somebody is in the cabin, as of a state with this number; None: of any."""
         for lift in self._lifts.values():
@@ -137,33 +133,15 @@ class LiftKeeper:
                 ride.aboard, ride.entered = True, False
                 lift.ask(lift.target, now)
 
-    def due(self, now: float) -> List[Tuple[str, str]]:
-        """Return the lifts that are to be asked now, and the floors at which they are to be open."""
-        found = []
-        for name, lift in self._lifts.items():
-            if now >= lift.ask_at:
-                lift.asked_last = now
-                found.append((name, str(lift.asked)))
-        return found
-
-    def next_moment(self, now: float) -> Optional[float]:
-        """Return when to look again, later than now; None: not before the next state or report."""
-        return next_moment(self._lifts.values(), now)
-
     def opened(self, now: float) -> Opened:
         """Return for whom which lift is open at which floor now; whoever is named may be in its door from then on."""
         gates: Dict[str, Set[str]] = {}
         for name, lift in self._lifts.items():
-            for agent, ride in lift.rides.items() if lift.asked and lift.is_done(now) else ():
+            for agent, ride in lift.rides.items() if lift.is_open(now) else ():
                 if ride.floor == lift.asked:
                     ride.entered = True
                     gates.setdefault(gate_at(name, ride.floor), set()).add(agent)
         return Opened(self._mission, self._seq, {gate: frozenset(agents) for gate, agents in gates.items()})
-
-    def waited_for(self, now: float) -> Dict[str, float]:
-        """Return the lifts that are to be open at a floor and are not, and since how many seconds they are asked."""
-        asked = {name: lift for name, lift in self._lifts.items() if lift.asked and not lift.is_done(now)}
-        return {name: now - lift.asked_since for name, lift in asked.items()}
 
     def late(self, now: float, unit: float) -> Iterator[str]:
         """Return what should be there by now, as in `lift1 at hall0`. `unit`: the seconds of a time unit."""

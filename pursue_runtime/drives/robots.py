@@ -6,8 +6,7 @@ import math
 import os
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
-from pursue_runtime.controller.frames import NO_LEVELS, Levels
-from pursue_runtime.controller.whereabouts import Place
+from pursue_runtime.controller.whereabouts import NO_LEVELS, Levels, Place
 from pursue_runtime.data import DataError, read_data
 from pursue_runtime.doors.lifts import read_lifts
 from pursue_runtime.drives.actions import Act, Acts, Rules, acts_of, location_of

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Callable, Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Set, Tuple
 
 from pursue_runtime.controller.goal import Goal, Movement
-from pursue_runtime.controller.navigation import Log, Navigation
+from pursue_runtime.controller.navigation import Navigation
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.view import View
 from pursue_runtime.controller.whereabouts import Place
@@ -20,7 +20,7 @@ from pursue_runtime.drives.report import ARRIVED, FAILED, INTERRUPTED, LATE, Dri
 from pursue_runtime.drives.tour import Way, next_way, towards
 from pursue_runtime.event_words import HELD, parse_report, parse_word
 from pursue_runtime.locations import movement
-from pursue_runtime.sentences import in_words
+from pursue_runtime.sentences import Log, in_words
 
 
 class Plan(NamedTuple):

@@ -17,7 +17,7 @@ from typing import Any, Dict, List, Set
 from tornado.iostream import IOStream, StreamBufferFullError, StreamClosedError
 from tornado.tcpserver import TCPServer
 
-from pursue_runtime.manager.background import Service
+from pursue_runtime.http_server import Service
 from pursue_runtime.manager.manager import RequestLog
 
 MAX_SUBSCRIBERS = 32  # at a time
@@ -44,7 +44,7 @@ class Forwarder(Service):
         """Serves from now on."""
         self._listener.add_sockets(self._sockets)
 
-    async def close(self) -> None:
+    async def end(self) -> None:
         """Ends all connections."""
         self._listener.stop()
         for stream in list(self._streams):

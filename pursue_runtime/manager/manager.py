@@ -13,9 +13,8 @@ import time
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.bounded import DATA, json_object
-from pursue_runtime.bundle import LIMIT, ORDER_LENGTH, Order, Refused, read_order
+from pursue_runtime.bundle import LIMIT, ORDER_LENGTH, KeyFolder, Order, Refused, read_order
 from pursue_runtime.rate_limited_log import RateLimitedLog
-from pursue_runtime.trusted_keys import KeyFolder
 
 LOCAL_MISSION, MISSION_STATUS = "local_mission", "mission_status"
 LONGEST_HEADER = 4 * ORDER_LENGTH  # bytes of all headers of a request
@@ -215,7 +214,7 @@ def mission_message(order_text: str, body: bytes) -> str:
 # Counts and log -------------------------------------------------------------------------------------------------------
 
 
-class RequestLog:
+class RequestLog(RateLimitedLog):
     """Counts requests by kind; what clients cause is logged at a limited rate.
 
     `warn(text)` and `note(text)` write to the log, `clock()` returns seconds.
@@ -224,21 +223,10 @@ class RequestLog:
     def __init__(
         self, warn: Callable[[str], None], note: Callable[[str], None], clock: Callable[[], float] = time.monotonic
     ) -> None:
-        self._info, self._clock = note, clock
-        self._log = RateLimitedLog(warn)
-
-    def count(self, word: str, text: str = "") -> None:
-        """Count an event; `text`, if given, is logged unless a line was logged just before."""
-        if text:
-            self._log.count(word, text, self._clock())
-        else:
-            self._log.counts[word] = self._log.counts.get(word, 0) + 1
+        super().__init__(warn, clock)
+        self._info = note
 
     def log(self, word: str, text: str) -> None:
         """Count an event and log it in any case: only trusted orders cause it."""
         self.count(word)
         self._info(text)
-
-    def counts(self) -> Dict[str, int]:
-        """So many of each so far."""
-        return dict(self._log.counts)

@@ -20,8 +20,7 @@ from typing import Any, Callable, List, Mapping, Optional, Tuple
 from tornado.web import Application, HTTPError, RequestHandler, stream_request_body
 
 from pursue_runtime.bundle import Order
-from pursue_runtime.http_server import LimitedServer, drop_chunks
-from pursue_runtime.manager.background import ServerError, Service
+from pursue_runtime.http_server import LimitedServer, ServerError, Service, drop_chunks
 from pursue_runtime.manager.manager import (
     HTTP,
     LONGEST_HEADER,
@@ -111,7 +110,7 @@ class Server(Service):
         self._server.limit(self.limits.connections, self.limits.longest, self._on_refused)
         self._server.add_sockets(self._sockets)
 
-    async def close(self) -> None:
+    async def end(self) -> None:
         """Ends all connections."""
         if self._server is not None:
             self._server.stop()

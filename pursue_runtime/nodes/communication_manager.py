@@ -11,23 +11,30 @@ import os
 from typing import Dict, List, Mapping, Optional, Tuple
 
 import rospy
-from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import String
 
 from pursue_runtime.arguments import KEYS, LOOPBACK, Argument, port
-from pursue_runtime.bundle import LIMIT
+from pursue_runtime.bundle import LIMIT, KeyFolder
 from pursue_runtime.data import Package
 from pursue_runtime.folders import keys_folder
-from pursue_runtime.manager.background import Background, ServerError, Service, bind
+from pursue_runtime.http_server import Background, ServerError, Service, bind
 from pursue_runtime.manager.forwarder import Forwarder
 from pursue_runtime.manager.manager import LOCAL_MISSION, MISSION_STATUS, Manager, RequestLog, topic_names
 from pursue_runtime.manager.server import Limits, Server, tls
-from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, robot_name, run_node, subscribe
-from pursue_runtime.nodes.process import lower_priority
+from pursue_runtime.nodes.links import Diagnostics, pulses_of_all
+from pursue_runtime.nodes.node import (
+    ERROR,
+    OK,
+    WARN,
+    Ending,
+    NodeReport,
+    lower_priority,
+    robot_name,
+    run_node,
+    subscribe,
+)
 from pursue_runtime.parameters import number, whole
 from pursue_runtime.slots import is_loopback
-from pursue_runtime.trusted_keys import KeyFolder
 
 ARGUMENTS = (
     KEYS,
@@ -66,8 +73,7 @@ class CommunicationManager:
         ]
         self.background.start()
         self.log_address(host, exposed, context is not None)
-        pulses = subscribe("/diagnostics", DiagnosticArray, lambda _: None, self.ending, queue_size=100)
-        Diagnostics(self.report, self.ending, Links(pulses, ending=self.ending, lost=self.ending.without_master).amend)
+        Diagnostics(self.report, self.ending, pulses_of_all(self.ending))
 
     def make_forwarder(self, host: str, told: Mapping[str, str]) -> Tuple[Optional[Forwarder], List[str]]:
         """The socket and the topics that go there; none without topics. Raises ServerError and ParameterError."""
@@ -117,7 +123,7 @@ class CommunicationManager:
         values: Dict[str, object] = {"robot": self.manager.robot, "port": self.server.port}
         if self.forwarder is not None:
             values["subscribers"] = self.forwarder.subscribers
-        values.update(sorted(self.record.counts().items()))
+        values.update(sorted(dict(self.record.counts).items()))
         trusted = self.manager.trusts_any_key and self.manager.reader_connected
         return NodeReport(trusted, {"error": ERROR, "warn": WARN}.get(how, OK), sentence, values)
 

@@ -21,17 +21,15 @@ from pursue_runtime.folders import ros_home
 from pursue_runtime.missions import Missions, own_source
 from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.exeggutor import Exeggutor
-from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, log, run_node, subscribe
-from pursue_runtime.nodes.state_message import subscribe_states
-from pursue_runtime.nodes.state_printer import StatePrinter
+from pursue_runtime.nodes.links import Diagnostics
+from pursue_runtime.nodes.node import ERROR, NO_STATE, OK, WARN, Ending, NodeReport, log, run_node, subscribe
+from pursue_runtime.nodes.state_message import StatePrinter, subscribe_states
 from pursue_runtime.nodes.witness import Witness
 from pursue_runtime.parameters import flag
-from pursue_runtime.sentences import in_words
+from pursue_runtime.sentences import in_words, trouble_values
 from pursue_runtime.state import LOST, STOPPED, WON, SystemState
-from pursue_runtime.state_filter import OLD, OURS, REFUSED
+from pursue_runtime.state_checks import OLD, OURS, REFUSED
 from pursue_runtime.strategy import parse_plan
-from pursue_runtime.troubles import trouble_values
 
 
 class Controller:
@@ -61,7 +59,7 @@ class Controller:
         self.witness = Witness(lambda: self.follower.filter.newest)
         states = subscribe_states(self.update_state, self.ending, on_malformed=self.follower.filter.count_malformed)
         subscribe(PLAN, String, self.learn, self.ending, queue_size=10, tcp_nodelay=True)
-        Diagnostics(self.report, self.ending, Links(states, ending=self.ending, lost=self.ending.without_master).amend)
+        Diagnostics(self.report, self.ending, states)
 
     def take_up(self) -> None:
         """Has the robots of the part that is played. Raises DataError where their settings are wrong."""
@@ -172,7 +170,7 @@ class Controller:
         if trouble:
             return NodeReport(False, WARN, trouble, values)
         if state is None:
-            return NodeReport(False, WARN, "no state from the observer yet", values)
+            return NodeReport(False, WARN, NO_STATE, values)
         if self.observer not in self.exegg.observers():
             return NodeReport(False, WARN, "the observer has not connected yet", values)
         if scheduler is None:

@@ -12,7 +12,7 @@ import rospy
 from std_msgs.msg import Bool, Int32, String
 
 from pursue_runtime.data import DataError
-from pursue_runtime.doors.asking import Word
+from pursue_runtime.doors.keeper import Word
 from pursue_runtime.doors.lifts import NOWHERE
 from pursue_runtime.doors.settings import (
     RMF_CLOSED,
@@ -31,38 +31,27 @@ from pursue_runtime.nodes.node import Ending, subscribe
 from pursue_runtime.nodes.robot_link import needed
 
 Report = Callable[[Any], None]
-"""Takes what it is, as an `asking.Word`; None: that is not known."""
+"""Takes what it is, as an `keeper.Word`; None: that is not known."""
+
+Ask = Callable[[Any], None]
+"""Asks a door, or a lift, for an `keeper.Word`; it may be asked the same again."""
 
 
-class DoorLink(ABC):
-    """The connection to one door, or one lift."""
-
-    @abstractmethod
-    def ask(self, what: Any) -> None:
-        """Ask it for an `asking.Word`; it may be asked the same again."""
-
-
-class _OwnTopics(DoorLink):
+def _ask_on_own_topics(
+    settings: DoorSettings,
+    kind: Any,
+    written: Callable[[Any], Any],
+    read: Callable[[Any], Any],
+    report: Report,
+    ending: Ending,
+) -> Ask:
     """One with topics of its own, whose messages have `data`."""
-
-    def __init__(
-        self,
-        settings: DoorSettings,
-        kind: Any,
-        written: Callable[[Any], Any],
-        read: Callable[[Any], Any],
-        report: Report,
-        ending: Ending,
-    ) -> None:
-        self._kind, self._written = kind, written
-        self._command = rospy.Publisher(settings.command, kind, queue_size=10, latch=True)
-        subscribe(settings.state, kind, lambda message: report(read(message.data)), ending, queue_size=10)
-
-    def ask(self, what: Any) -> None:
-        self._command.publish(self._kind(self._written(what)))
+    command = rospy.Publisher(settings.command, kind, queue_size=10, latch=True)
+    subscribe(settings.state, kind, lambda message: report(read(message.data)), ending, queue_size=10)
+    return lambda what: command.publish(kind(written(what)))
 
 
-class _OfRmf(DoorLink):
+class _OfRmf(ABC):
     """One of Open-RMF, whose topics all of them share. `kind`: Door or Lift."""
 
     def __init__(self, settings: DoorSettings, kind: str, report: Report, ending: Ending) -> None:
@@ -122,7 +111,7 @@ class _RmfLift(_OfRmf):
             self._report(floor_called(self._settings, message.current_floor) if is_open else NOWHERE)
 
 
-class _Simulated(DoorLink):
+class _Simulated:
     """One that has done what it was asked at a time of its own within its time, and closes at once."""
 
     def __init__(self, within: Callable[[], float], seed: str, report: Report, ending: Ending) -> None:
@@ -144,19 +133,17 @@ class _Simulated(DoorLink):
             self._alarm.set(rospy.get_time() + share * self._within())
 
 
-def linked(
-    settings: DoorSettings, within: Callable[[], float], seed: str, report: Report, ending: Ending
-) -> DoorLink:
-    """Return the connection to a door, or a lift, with these settings. `within` and `seed`: as in a simulated one.
+def linked(settings: DoorSettings, within: Callable[[], float], seed: str, report: Report, ending: Ending) -> Ask:
+    """Connect a door, or a lift, with these settings; return what asks it. `within` and `seed`: as in a simulated one.
     Raises DataError where its messages are not installed."""
     if settings.adapter == "simulated":
-        return _Simulated(within, seed, report, ending)
+        return _Simulated(within, seed, report, ending).ask
     if settings.adapter == "rmf":
         kind = _RmfLift if settings.floors else _RmfDoor
-        return kind(settings, "Lift" if settings.floors else "Door", report, ending)
+        return kind(settings, "Lift" if settings.floors else "Door", report, ending).ask
     called = partial(floor_called, settings)
     numbers, words = (partial(one, settings) for one in (floor_number, floor_word))
     of_lift: Any = {"std_msgs": (Int32, numbers, called), "string": (String, words, called)}
     of_door: Any = {"std_msgs": (Bool, bool, bool), "string": (String, command_word, state_of_word)}
     kind_of_message, written, read = (of_lift if settings.floors else of_door)[settings.adapter]
-    return _OwnTopics(settings, kind_of_message, written, read, report, ending)
+    return _ask_on_own_topics(settings, kind_of_message, written, read, report, ending)

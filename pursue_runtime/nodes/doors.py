@@ -11,26 +11,32 @@ from __future__ import annotations
 
 import threading
 from functools import partial
-from typing import Any, Dict, Mapping, Optional, Union
+from typing import Any, Mapping, Optional
 
 import rospy
 from std_msgs.msg import String
 
 from pursue_runtime.arguments import CONFIG
 from pursue_runtime.data import Package
-from pursue_runtime.doors.asking import Word
-from pursue_runtime.doors.keeper import DoorKeeper, read_doors
+from pursue_runtime.doors.keeper import DoorKeeper, Keeper, read_doors
 from pursue_runtime.doors.lifts import ABOARD, IS_ABOARD, LiftKeeper, read_lifts
 from pursue_runtime.doors.opened import DOORS, NONE_OPENED, opened_text
 from pursue_runtime.doors.settings import read_door_settings, read_lift_settings
 from pursue_runtime.event_words import parse_word
 from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.door_links import linked
-from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, run_node, subscribe
-from pursue_runtime.nodes.process import lower_priority, run_to_end
-from pursue_runtime.nodes.state_message import subscribe_states
+from pursue_runtime.nodes.node import (
+    NO_STATE,
+    OK,
+    WARN,
+    Ending,
+    NodeReport,
+    lower_priority,
+    run_node,
+    run_to_end,
+    subscribe,
+)
 from pursue_runtime.parameters import whole
 from pursue_runtime.state import LOST, STOPPED, WON, SystemState
 
@@ -50,27 +56,19 @@ class DoorsNode:
         self.within = {name: door.within for name, door in doors.items()}
         self.within.update({name: min(lift.within, lift.takes) for name, lift in lifts.items()})
         self.doors, self.lifts = DoorKeeper(doors), LiftKeeper(lifts)
-        self.keepers: Dict[str, Union[DoorKeeper, LiftKeeper]] = {
-            **dict.fromkeys(doors, self.doors), **dict.fromkeys(lifts, self.lifts)
-        }
         self.lock = threading.RLock()
         self.state: Optional[SystemState] = None
         self.opened = NONE_OPENED
         self.publisher = rospy.Publisher(DOORS, String, queue_size=10, latch=True, tcp_nodelay=True)
         self.alarm = Alarm(self.act, self.ending)
         seed = whole(given, "seed", 0, least=None)
-        self.links = {
-            name: linked(
-                one, partial(self.seconds, name), f"{seed}/{name}", partial(self.on_report, name), self.ending
-            )
-            for name, one in settings.items()
-        }
+        self.ask = {}
+        for name, one in settings.items():
+            on_report = partial(self.on_report, self.doors if name in doors else self.lifts, name)
+            self.ask[name] = linked(one, partial(self.seconds, name), f"{seed}/{name}", on_report, self.ending)
         if lifts:
             subscribe(ABOARD, String, self.on_aboard, self.ending, queue_size=100)
-        states = subscribe_states(self.on_state, self.ending, on_malformed=self.membership.count_malformed)
-        pulses = subscribe("/diagnostics", rospy.AnyMsg, lambda _: None, self.ending, queue_size=100)
-        links = Links(states, pulses, ending=self.ending, lost=self.ending.without_master)
-        Diagnostics(self.report, self.ending, links.amend)
+        self.membership.follow(self.on_state, self.report)
 
     def seconds(self, name: str) -> float:
         """Return the seconds in which a door, or a lift, has done what it was asked at the latest."""
@@ -87,16 +85,16 @@ class DoorsNode:
             if not self.membership.takes(state):
                 return
             self.state = state
-            for keeper in (self.doors, self.lifts):
-                keeper.on_state(state, rospy.get_time())
+            self.doors.on_state(state, rospy.get_time())
+            self.lifts.on_state(state, rospy.get_time())
             self.act()
         if state.status in (WON, LOST, STOPPED):
             self.ending.end(0 if state.status == WON else 1)
 
-    def on_report(self, name: str, said: Any) -> None:
+    def on_report(self, keeper: Keeper, name: str, said: Any) -> None:
         """Handle what a door, or a lift, reports."""
         with self.lock:
-            self.keepers[name].on_report(name, said, rospy.get_time())
+            keeper.on_report(name, said, rospy.get_time())
             self.act()
 
     def on_aboard(self, message: String) -> None:
@@ -113,9 +111,8 @@ class DoorsNode:
         """Ask the doors and lifts that are to be asked, publish for whom they are open, and sleep until more is due."""
         with self.lock:
             now = rospy.get_time()
-            due: Dict[str, Word] = {**dict(self.doors.due(now)), **dict(self.lifts.due(now))}
-            for name, what in due.items():
-                self.links[name].ask(what)
+            for name, what in (*self.doors.due(now), *self.lifts.due(now)):
+                self.ask[name](what)
                 rospy.logdebug("%s is asked: %s", name, what)
             doors, lifts = self.doors.opened(now), self.lifts.opened(now)
             opened = doors._replace(doors={**doors.doors, **lifts.doors})
@@ -128,18 +125,13 @@ class DoorsNode:
     def report(self) -> NodeReport:
         """Return the report for /diagnostics."""
         with self.lock:
-            state, refused, trouble = self.state, self.membership.refused, self.membership.trouble
-            now = rospy.get_time()
+            now, state = rospy.get_time(), self.state
             shut = self.doors.waited_for(now)
             late = sorted(door for door, seconds in shut.items() if seconds > self.seconds(door))
             late += sorted(self.lifts.late(now, self.unit))
-            waited_for = [*shut, *self.lifts.waited_for(now)]
-            values: Dict[str, object] = {"mission": self.membership.source.mission, "waited_for": " ".join(waited_for)}
-        values.update(self.membership.counts)
-        if refused:
-            return NodeReport(False, ERROR, f"refused {refused}", values)
-        if trouble or state is None:
-            return NodeReport(state is not None, WARN, trouble or "no state from the observer yet", values)
+            values = {"waited_for": " ".join([*shut, *self.lifts.waited_for(now)])}
+        if state is None:
+            return NodeReport(False, WARN, NO_STATE, values)
         if late:
             return NodeReport(True, WARN, f"{' and '.join(late)} should be open by now", values)
         return NodeReport(True, OK, state.status, values)

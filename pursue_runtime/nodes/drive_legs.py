@@ -26,10 +26,9 @@ import rospy
 from std_msgs.msg import String
 
 from pursue_runtime.arguments import BAG, CONFIG
-from pursue_runtime.controller.frames import MapFrames
 from pursue_runtime.controller.goal import Answer
 from pursue_runtime.controller.settings import Settings, read_settings
-from pursue_runtime.controller.whereabouts import Place, Position, place_of
+from pursue_runtime.controller.whereabouts import MapFrames, Place, Position, place_of
 from pursue_runtime.data import DataError, Package
 from pursue_runtime.drives.report import DRIVES, Drive, format_drive
 from pursue_runtime.drives.robots import Driven, driven_robots, duration, next_action, who_is_near

@@ -12,12 +12,11 @@ from typing import Callable, Dict, List, Mapping, Optional, Sequence
 import rospy
 from std_msgs.msg import String
 
-from pursue_runtime.controller.frames import NO_LEVELS, Levels, MapFrames
 from pursue_runtime.controller.goal import Answer, Halt, Movement
 from pursue_runtime.controller.navigation import Navigation
 from pursue_runtime.controller.settings import Settings, read_settings
 from pursue_runtime.controller.view import View
-from pursue_runtime.controller.whereabouts import Place, Position, place_of
+from pursue_runtime.controller.whereabouts import NO_LEVELS, Levels, MapFrames, Place, Position, place_of
 from pursue_runtime.doors.lifts import ABOARD
 from pursue_runtime.doors.opened import DOORS, NONE_OPENED, read_opened
 from pursue_runtime.event_words import EVENTS, ORDERED, Word, format_word

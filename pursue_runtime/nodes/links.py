@@ -23,6 +23,7 @@ from xml.parsers.expat import ExpatError
 
 import rosgraph
 import rospy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rospy.impl.registration import get_topic_manager
 
 from pursue_runtime.links import (
@@ -36,7 +37,7 @@ from pursue_runtime.links import (
     Peers,
     Unanswered,
 )
-from pursue_runtime.nodes.node import ERROR, STALE, WARN, Ending, NodeReport, start_thread, worse
+from pursue_runtime.nodes.node import ERROR, STALE, WARN, Ending, NodeReport, start_thread, subscribe, worse
 
 PERIOD = 1.0
 """Seconds between two looks at the connections."""
@@ -81,7 +82,7 @@ class Links:
     `lost(reason)` is called once, in a thread of the watch, when the master is given up.
     """
 
-    def __init__(self, *pulses: rospy.Subscriber, ending: Ending, lost: Optional[Callable[[str], None]] = None) -> None:
+    def __init__(self, *pulses: rospy.Subscriber, ending: Ending, lost: Callable[[str], object]) -> None:
         self._pulses = pulses
         self._lost = lost
         self._ending = ending
@@ -205,12 +206,55 @@ class Links:
             if news:
                 problem = MASTER_PROBLEMS[found]
                 (rospy.logerr if problem else rospy.logwarn)("%s", problem or "the ROS master is back")
-            if lost and not reported and self._lost is not None:
+            if lost and not reported:
                 self._lost(MASTER_PROBLEMS[found])
             reported = reported or lost
             if found == REGISTERED:
                 connect_missing(publishers)
             time.sleep(MASTER_PERIOD if found == REGISTERED else PERIOD)
+
+
+class Diagnostics:
+    """Publishes a report on /diagnostics once a second of real time: simulated time may stand still.
+
+    It tells what is wrong with the master and the connections as well, which are watched from here on (see `Links`).
+    Without a master the node ends, unless something else is to be done (`lost`).
+    """
+
+    def __init__(
+        self,
+        report: Callable[[], NodeReport],
+        ending: Ending,
+        *pulses: rospy.Subscriber,
+        lost: Optional[Callable[[str], object]] = None,
+    ) -> None:
+        self._name = rospy.get_name().lstrip("/")
+        self._report = report
+        self._links = Links(*pulses, ending=ending, lost=lost or ending.without_master)
+        self._publisher = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=10)
+        start_thread("diagnostics", self._run, ending)
+
+    def _run(self) -> None:
+        while not rospy.is_shutdown():
+            report = self._links.amend(self._report())
+            values = {"ready": str(report.ready).lower(), **report.values}
+            status = DiagnosticStatus(
+                level=report.level,
+                name=f"{self._name}: mission",
+                message=report.message,
+                hardware_id=self._name,
+                values=[KeyValue(key, str(value)) for key, value in values.items()],
+            )
+            array = DiagnosticArray(status=[status])
+            array.header.stamp = rospy.Time.now()
+            with contextlib.suppress(rospy.ROSException):  # the node is going down
+                self._publisher.publish(array)
+            time.sleep(1.0)
+
+
+def pulses_of_all(ending: Ending) -> rospy.Subscriber:
+    """What each node publishes once a second, for a node that reads none of it."""
+    return subscribe("/diagnostics", rospy.AnyMsg, lambda _: None, ending, queue_size=100)
 
 
 def ask_master() -> Tuple[str, Dict[str, List[str]]]:

@@ -15,12 +15,19 @@ from std_msgs.msg import String
 from pursue_runtime.arguments import CONFIG
 from pursue_runtime.data import DataError, Package
 from pursue_runtime.event_words import MARKERS, PLAN
-from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, run_node, subscribe
-from pursue_runtime.nodes.process import lower_priority, restart_process
+from pursue_runtime.nodes.node import (
+    NO_STATE,
+    OK,
+    WARN,
+    Ending,
+    NodeReport,
+    lower_priority,
+    restart_process,
+    run_node,
+    subscribe,
+)
 from pursue_runtime.nodes.robot_link import needed
-from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import text
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import parse_plan
@@ -48,17 +55,15 @@ class MarkersNode:
         settings = source.read("ui.yaml")
         plan = read_floor_plan(source.read("poses.yaml"), settings)
         self.frame = text(rospy.get_param("~", {}), "map_frame", "map")
-        self.picture = Picture(model, plan, read_spots(settings, plan), strategies_of(source))
+        self.strategies = {0: strategies_of(source)}  # by the number of their plan
+        self.picture = Picture(model, plan, read_spots(settings, plan), self.strategies)
         self.lock = threading.Lock()
         self.shown: List[Mark] = []
         self.state: Optional[SystemState] = None
         self.publisher = rospy.Publisher(MARKERS, self.messages.MarkerArray, queue_size=1, latch=True)
         self.show(None)
-        states = subscribe_states(self.on_state, self.ending, on_malformed=self.membership.count_malformed)
         subscribe(PLAN, String, self.on_plan, self.ending, queue_size=10)
-        pulses = subscribe("/diagnostics", rospy.AnyMsg, lambda _: None, self.ending, queue_size=100)
-        links = Links(states, pulses, ending=self.ending, lost=self.ending.without_master)
-        Diagnostics(self.report, self.ending, links.amend)
+        self.membership.follow(self.on_state, self.report)
 
     def on_state(self, state: SystemState, publisher: str) -> None:
         """Show a state of the mission."""
@@ -76,7 +81,7 @@ class MarkersNode:
             return
         if plan.get("mission", "") in ("", self.membership.source.mission):
             with self.lock:
-                self.picture.add_plan(plan["plan"], strategies)
+                self.strategies[plan["plan"]] = strategies
                 self.show(self.state)
 
     def show(self, state: Optional[SystemState]) -> None:
@@ -117,14 +122,9 @@ class MarkersNode:
     def report(self) -> NodeReport:
         """Return the report for /diagnostics."""
         with self.lock:
-            values: Dict[str, object] = {"mission": self.membership.source.mission, "markers": len(self.shown)}
-            state = self.state
-        refused, trouble = self.membership.refused, self.membership.trouble
-        values.update(self.membership.counts)
-        if refused:
-            return NodeReport(False, ERROR, f"refused {refused}", values)
-        if trouble or state is None:
-            return NodeReport(False, WARN, trouble or "no state from the observer yet", values)
+            state, values = self.state, {"markers": len(self.shown)}
+        if state is None:
+            return NodeReport(False, WARN, NO_STATE, values)
         return NodeReport(True, OK, state.status, values)
 
     def run(self) -> int:

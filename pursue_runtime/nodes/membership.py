@@ -7,7 +7,8 @@ from __future__ import annotations
 import os
 from contextlib import suppress
 from copy import copy
-from typing import Any, Dict, Mapping, Optional
+from functools import partial
+from typing import Any, Callable, Dict, Mapping, Optional
 
 import rospy
 from pursue_msgs.msg import SystemState as SystemStateMessage
@@ -18,13 +19,13 @@ from pursue_runtime.event_words import PLAN, STATE
 from pursue_runtime.folders import ros_home
 from pursue_runtime.missions import Missions, Source, own_source
 from pursue_runtime.model import Model
-from pursue_runtime.nodes.node import Ending, subscribe
-from pursue_runtime.nodes.state_printer import StatePrinter
+from pursue_runtime.nodes.links import Diagnostics, pulses_of_all
+from pursue_runtime.nodes.node import ERROR, WARN, Ending, NodeReport, subscribe
+from pursue_runtime.nodes.state_message import StatePrinter, subscribe_states
 from pursue_runtime.nodes.witness import Witness
 from pursue_runtime.parameters import flag
 from pursue_runtime.state import WAITING, SystemState
-from pursue_runtime.state_checks import model_problem
-from pursue_runtime.state_filter import OLD, OTHER, OURS, REFUSED, StateFilter
+from pursue_runtime.state_checks import OLD, OTHER, OURS, REFUSED, StateFilter, model_problem
 from pursue_runtime.strategy import Strategy, parse_plan
 
 PATIENCE = 1.0
@@ -81,6 +82,19 @@ class Membership:
         if not problem and model.written != self.model.written:
             self.model.become(model)
         return problem
+
+    def follow(self, on_state: Callable[[SystemState, str], None], report: Callable[[], NodeReport]) -> None:
+        """Hand on each state, with the name of its publisher, and publish reports on the node, with what is wrong with
+        its membership."""
+        states = subscribe_states(on_state, self._ending, on_malformed=self.count_malformed)
+        Diagnostics(partial(self._amended, report), self._ending, states, pulses_of_all(self._ending))
+
+    def _amended(self, report: Callable[[], NodeReport]) -> NodeReport:
+        found, refused, trouble = report(), self.refused, self.trouble
+        values = {"mission": self.source.mission, **found.values, **self.counts}
+        if refused or trouble:
+            return NodeReport(False, ERROR if refused else WARN, f"refused {refused}" if refused else trouble, values)
+        return found._replace(values=values)
 
     @property
     def refused(self) -> str:

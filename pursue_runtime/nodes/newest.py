@@ -11,7 +11,7 @@ from typing import Any, Dict, Optional
 import rospy
 
 from pursue_runtime.nodes.node import Ending, start_thread
-from pursue_runtime.observer.mark import Rank
+from pursue_runtime.observer.records import Rank
 
 NEWEST = "pursue/newest"
 """The parameter, beside the node: `launch`, and `seq`, `ended` and `stamp` (seconds) of its newest state."""

@@ -1,9 +1,11 @@
-"""What every node needs of ROS: threads and subscriptions whose faults end it, diagnostics, and its end."""
+"""What every node needs of ROS: threads and subscriptions whose faults end it, diagnostics, its end, the priority of
+its process, and how its program begins anew."""
 
 from __future__ import annotations
 
 import contextlib
 import errno
+import os
 import queue
 import signal
 import socket
@@ -11,11 +13,13 @@ import sys
 import threading
 import time
 import traceback
-from typing import Any, Callable, Dict, Mapping, NamedTuple, Optional, Sequence, Tuple, Type
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Callable, Mapping, NamedTuple, NoReturn, Optional, Sequence, Tuple, Type
 
 import rosgraph
 import rospy
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticStatus
 from rosgraph.xmlrpc import ThreadingXMLRPCServer
 
 from pursue_runtime.arguments import Argument, ignored, read_arguments
@@ -24,9 +28,10 @@ from pursue_runtime.links import MASTER_PROBLEMS
 from pursue_runtime.links import REFUSED as MASTER_REFUSED
 from pursue_runtime.parameters import ParameterError
 
+NO_STATE = "no state from the observer yet"
+
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 STALE = DiagnosticStatus.STALE  # what the node knows is old
-
 
 LOGS = {"debug": rospy.logdebug, "info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
 
@@ -53,7 +58,7 @@ class NodeReport(NamedTuple):
     ready: bool
     level: int
     message: str
-    values: Dict[str, object]
+    values: Mapping[str, object]
 
 
 def start_thread(name: str, run: Callable[[], object], ending: Ending) -> None:
@@ -89,43 +94,6 @@ def subscribe(
                 ending.end(FAILED)
 
     return rospy.Subscriber(topic, kind, guarded, **options)
-
-
-class Diagnostics:
-    """Publishes a report on /diagnostics once a second of real time: simulated time may stand still.
-
-    `amend` adds what is wrong with the connections and the master (see `Links`).
-    """
-
-    def __init__(
-        self, report: Callable[[], NodeReport], ending: Ending, amend: Callable[[NodeReport], NodeReport]
-    ) -> None:
-        self._name = rospy.get_name().lstrip("/")
-        self._report = report
-        self._amend = amend
-        self._publisher = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=10)
-        start_thread("diagnostics", self._run, ending)
-
-    def _run(self) -> None:
-        while not rospy.is_shutdown():
-            self.publish()
-            time.sleep(1.0)
-
-    def publish(self) -> None:
-        """Publishes the report of now."""
-        report = self._amend(self._report())
-        values = {"ready": str(report.ready).lower(), **report.values}
-        status = DiagnosticStatus(
-            level=report.level,
-            name=f"{self._name}: mission",
-            message=report.message,
-            hardware_id=self._name,
-            values=[KeyValue(key, str(value)) for key, value in values.items()],
-        )
-        array = DiagnosticArray(status=[status])
-        array.header.stamp = rospy.Time.now()
-        with contextlib.suppress(rospy.ROSException):  # the node is going down
-            self._publisher.publish(array)
 
 
 FAILED = 1
@@ -297,3 +265,53 @@ def warn_without_clock(wait: float = 5.0) -> None:
                 "/use_sim_time is true, but nobody publishes /clock: start the simulator that does, or where there is"
                 " none: rosparam set /use_sim_time false, and launch again"
             )
+
+
+LOWER = 5
+"""By how much the nice value of nodes is raised that decide nothing about robots."""
+
+ANEW = "PURSUE_ANEW"
+"""In the environment of a node that has begun anew."""
+
+
+def restart_process(environment: Mapping[str, str] = MappingProxyType({})) -> NoReturn:
+    """Starts the node's program again in the same process: for roslaunch, which may end with it, it has never ended.
+
+    `environment` is added to that of the process.
+    """
+    for sign in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(sign, signal.SIG_DFL)
+    sys.stdout.flush()
+    os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, ANEW: "yes", **environment})
+
+
+def run_to_end(ending: Ending) -> int:
+    """Wait until the mission ends; return the exit status. Where another mission is prepared, the node begins anew."""
+    status = ending.wait(linger=0.2)
+    if ending.renewed:
+        restart_process()
+    return status
+
+
+def lower_priority() -> None:
+    """Lower the priority of this process, once: nodes that decide about robots come first.
+
+    Where the kernel shares the processor among sessions (autogroup), nice counts within a session only, and roslaunch
+    starts each node in its own: then the priority of the session is lowered as well.
+    """
+    if ANEW not in os.environ:
+        os.nice(LOWER)
+        if os.getsid(0) == os.getpid():
+            with contextlib.suppress(OSError, ValueError):  # there are no such groups
+                _lower_session(Path("/proc/self/autogroup"))
+
+
+def _lower_session(autogroup: Path) -> None:
+    """Lower the priority of our session. Raises OSError and ValueError."""
+    level = int(autogroup.read_text().rpartition(" ")[2]) + LOWER
+    for _ in range(20):
+        try:
+            autogroup.write_text(str(min(level, 19)))
+            return
+        except BlockingIOError:  # the kernel lets one process do so in a tenth of a second
+            time.sleep(0.1)

@@ -26,25 +26,22 @@ from pursue_runtime.folders import ros_home, scenario_folder
 from pursue_runtime.missions import Missions, Source, own_source
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.alarm import Alarm, Later
-from pursue_runtime.nodes.links import Links
+from pursue_runtime.nodes.links import Diagnostics
 from pursue_runtime.nodes.newest import Newest
 from pursue_runtime.nodes.node import (
     ERROR,
     OK,
     WARN,
-    Diagnostics,
     Ending,
     NodeReport,
+    restart_process,
     run_node,
     start_thread,
     subscribe,
 )
 from pursue_runtime.nodes.order_desk import OrderDesk
-from pursue_runtime.nodes.plain_words import PlainWords
-from pursue_runtime.nodes.process import restart_process
 from pursue_runtime.nodes.publishing import ServedFirst, is_connected
-from pursue_runtime.nodes.state_message import message_of
-from pursue_runtime.nodes.state_printer import StatePrinter
+from pursue_runtime.nodes.state_message import PlainWords, StatePrinter, message_of
 from pursue_runtime.nodes.witness import Witnesses
 from pursue_runtime.observer.journal import Journal, last_mission
 from pursue_runtime.observer.mission import Mission
@@ -110,8 +107,7 @@ class Observer:
         pulses = subscribe("/diagnostics", DiagnosticArray, self.on_diagnostics, self.ending, queue_size=100)
         start_thread("journal", self.journal.keep_synced, self.ending)
         start_thread("heartbeat", self.keep_publishing, self.ending)
-        links = Links(pulses, ending=self.ending, lost=partial(self.call, "stop"))
-        Diagnostics(self.report, self.ending, links.amend)
+        Diagnostics(self.report, self.ending, pulses, lost=partial(self.call, "stop"))
 
     def _source(self) -> Source:
         """Where the data are. A mission that was under way when an observer of this launch died goes on, whatever has

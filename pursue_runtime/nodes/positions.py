@@ -15,9 +15,8 @@ from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Seque
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 
-from pursue_runtime.controller.frames import LEVEL
 from pursue_runtime.controller.settings import Settings, read_settings
-from pursue_runtime.controller.whereabouts import Position
+from pursue_runtime.controller.whereabouts import LEVEL, Position
 from pursue_runtime.data import DataError
 from pursue_runtime.nodes.node import Ending, start_thread, subscribe
 from pursue_runtime.nodes.robot_link import needed, position_of

@@ -20,14 +20,14 @@ import rospy
 from std_msgs.msg import String
 
 from pursue_runtime.arguments import KEYS
-from pursue_runtime.bundle import LIMIT
+from pursue_runtime.bundle import LIMIT, KeyFolder
 from pursue_runtime.data import Package
 from pursue_runtime.event_words import STATE
 from pursue_runtime.folders import keys_folder, missions_folder
 from pursue_runtime.manifest import MISSION, mission_id
 from pursue_runtime.nodes.alarm import Alarm
-from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import OK, WARN, Diagnostics, Ending, NodeReport, log, robot_name, run_node, subscribe
+from pursue_runtime.nodes.links import Diagnostics
+from pursue_runtime.nodes.node import OK, WARN, Ending, NodeReport, log, robot_name, run_node, subscribe
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import number, whole
 from pursue_runtime.reader.contents import StoreError
@@ -35,7 +35,6 @@ from pursue_runtime.reader.packages import ALL, packages_here, without_package
 from pursue_runtime.reader.reader import KEYS_PERIOD, PATIENCE, Machine, Reader
 from pursue_runtime.reader.store import KEEP, Store
 from pursue_runtime.state import SystemState
-from pursue_runtime.trusted_keys import KeyFolder
 
 RETRY = 10.0
 """Seconds until a store that cannot be used is tried again."""
@@ -59,7 +58,7 @@ class Node:
         self.orders = subscribe("local_mission", String, self.on_order, ending, queue_size=1, buff_size=1 << 20)
         topic = rospy.get_param("~state_topic", STATE)
         states = subscribe_states(self.on_state, ending, "/" + topic.lstrip("/"))
-        Diagnostics(self.report, ending, Links(states, ending=ending, lost=ending.without_master).amend)
+        Diagnostics(self.report, ending, states)
         trouble = self.reader.problem()
         log("err" if trouble else "info", trouble or f"{robot.name} takes missions")
         for node in without_package(nodes, installed):

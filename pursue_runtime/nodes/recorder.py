@@ -25,11 +25,21 @@ from pursue_runtime.arguments import BAG, CONFIG
 from pursue_runtime.data import Package
 from pursue_runtime.event_words import STATE, SYSTEM_STATE
 from pursue_runtime.folders import scenario_folder
-from pursue_runtime.nodes.links import Links, is_gone
+from pursue_runtime.nodes.links import Diagnostics, is_gone
 from pursue_runtime.nodes.membership import Membership
-from pursue_runtime.nodes.node import OK, REFUSED, WARN, Diagnostics, Ending, NodeReport, run_node, subscribe
+from pursue_runtime.nodes.node import (
+    NO_STATE,
+    OK,
+    REFUSED,
+    WARN,
+    Ending,
+    NodeReport,
+    lower_priority,
+    restart_process,
+    run_node,
+    subscribe,
+)
 from pursue_runtime.nodes.positions import namespaces
-from pursue_runtime.nodes.process import lower_priority, restart_process
 from pursue_runtime.nodes.state_message import state_of
 from pursue_runtime.parameters import names
 from pursue_runtime.state import ENDED, WAITING, WON, SystemState
@@ -85,8 +95,7 @@ class Recorder:
             for topic in dict.fromkeys(wanted)
         ]
         pulses = [each for each in self.subscribers if each.resolved_name == "/diagnostics"]
-        links = Links(*pulses, ending=self.ending, lost=lambda _: self.ending.end(1))
-        Diagnostics(self.report, self.ending, links.amend)
+        Diagnostics(self.report, self.ending, *pulses, lost=lambda _: self.ending.end(1))
 
     def note_game(self, others: Mapping[str, str]) -> None:
         """The bag begins with what is needed to check it."""
@@ -114,7 +123,7 @@ class Recorder:
             return NodeReport(False, WARN, self.membership.trouble, values)
         if self.status not in ("", WAITING):
             return NodeReport(True, OK, "recording", values)
-        why = self.missing() if self.status else "no state from the observer yet"
+        why = self.missing() if self.status else NO_STATE
         return NodeReport(not why, WARN if why else OK, why or "recording", values)
 
     def missing(self) -> str:

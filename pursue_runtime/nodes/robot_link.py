@@ -12,14 +12,14 @@ from geometry_msgs.msg import Pose, PoseStamped, PoseWithCovarianceStamped
 from std_msgs.msg import String
 
 from pursue_runtime.controller.answers import outcome_name
-from pursue_runtime.controller.frames import LEVEL, NO_LEVELS, STOREY, MapFrames
 from pursue_runtime.controller.goal import ABORTED, Answer, Goal
 from pursue_runtime.controller.settings import Settings
-from pursue_runtime.controller.whereabouts import Position, yaw_of
+from pursue_runtime.controller.whereabouts import LEVEL, NO_LEVELS, STOREY, MapFrames, Position, yaw_of
 from pursue_runtime.data import DataError
 from pursue_runtime.nodes.node import Ending, subscribe
 from pursue_runtime.nodes.publishing import ServedFirst, is_recorder, listeners, publish_to_one
 from pursue_runtime.orders import Order, order_text
+from pursue_runtime.sentences import Log
 
 STALE = 1.0
 """Seconds of ROS time after which a transform that was not renewed does not say any more where the robot is."""
@@ -29,9 +29,6 @@ _NOT_DEBIANS = ("mbf_msgs",)
 
 _KNOWN = 20
 """So many goals have a known outcome; a status lists those of the last five seconds."""
-
-Log = Callable[[str, str], None]
-"""Takes a level (info, warn, err) and a sentence."""
 
 PublishToOne = Callable[[Any], None]
 """Publishes to one subscriber alone."""

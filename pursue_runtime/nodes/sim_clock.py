@@ -19,8 +19,8 @@ from rosgraph_msgs.msg import Clock
 from pursue_runtime.data import Package
 from pursue_runtime.event_words import EVENTS, STATE
 from pursue_runtime.folders import scenario_folder
-from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import OK, Diagnostics, Ending, NodeReport, run_node, start_thread, subscribe
+from pursue_runtime.nodes.links import Diagnostics
+from pursue_runtime.nodes.node import OK, Ending, NodeReport, run_node, start_thread, subscribe
 from pursue_runtime.simulator.clock import ClockFile, Pace, SimClock, read_pace, send_whole
 
 
@@ -47,8 +47,10 @@ def run(pace: Pace, scenario: str) -> int:
         )
         for topic, act in ((EVENTS, clock.on_word), (STATE, clock.on_message))
     ]
-    links = Links(states, ending=ending, lost=lambda _: ending.end(1))
-    Diagnostics(lambda: NodeReport(True, OK, f"{clock.now:.2f} s", {"speed": pace.speed}), ending, links.amend)
+    Diagnostics(
+        lambda: NodeReport(True, OK, f"{clock.now:.2f} s", {"speed": pace.speed}),
+        ending, states, lost=lambda _: ending.end(1),
+    )  # fmt: skip
     start_thread("clock", lambda: tick(clock, publisher, memory), ending)
     return ending.wait()
 

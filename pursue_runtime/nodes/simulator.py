@@ -18,12 +18,9 @@ from pursue_runtime.arguments import CONFIG
 from pursue_runtime.data import Package
 from pursue_runtime.event_words import EVENTS, ORDERED, Word, format_word, parse_word
 from pursue_runtime.nodes.alarm import Alarm
-from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, run_node, subscribe
-from pursue_runtime.nodes.process import lower_priority, run_to_end
+from pursue_runtime.nodes.node import OK, WARN, Ending, NodeReport, lower_priority, run_node, run_to_end, subscribe
 from pursue_runtime.nodes.publishing import Newcomers, listeners
-from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import choice, names, whole
 from pursue_runtime.simulator.simulator import DELAYS, Delays, Simulator
 from pursue_runtime.state import LOST, STOPPED, WAITING, WON, SystemState
@@ -55,10 +52,7 @@ class SimulatorNode:
                 self.subscribers.append(
                     subscribe(topic, kind, self.on_order, self.ending, robot, queue_size=10, tcp_nodelay=True)
                 )
-        states = subscribe_states(self.on_state, self.ending, on_malformed=self.membership.count_malformed)
-        pulses = subscribe("/diagnostics", rospy.AnyMsg, lambda _: None, self.ending, queue_size=100)
-        links = Links(states, pulses, ending=self.ending, lost=self.ending.without_master)
-        Diagnostics(self.report, self.ending, links.amend)
+        self.membership.follow(self.on_state, self.report)
 
     def on_state(self, state: SystemState, publisher: str) -> None:
         """Handle a state: activities begin."""
@@ -106,13 +100,7 @@ class SimulatorNode:
         with self.lock:
             observer, status, reported = self.observer, self.status, self.reported
         unconnected = sorted({each.resolved_name for each in self.subscribers if each.get_num_connections() == 0})
-        values = {"mission": self.membership.source.mission, "reported": reported, "uncommanded": " ".join(unconnected)}
-        refused = self.membership.refused
-        values.update(self.membership.counts)
-        if refused:
-            return NodeReport(False, ERROR, f"refused {refused}", values)
-        if self.membership.trouble:
-            return NodeReport(False, WARN, self.membership.trouble, values)
+        values = {"reported": reported, "uncommanded": " ".join(unconnected)}
         if not observer or observer not in listeners(self.events):
             return NodeReport(False, WARN, "not connected to the observer yet", values)
         if unconnected:

@@ -16,24 +16,31 @@ from pursue_runtime.doors.opened import DOORS, read_opened
 from pursue_runtime.event_words import EVENTS, FINISH, PLAN, START
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.alarm import Alarm
-from pursue_runtime.nodes.links import Links
+from pursue_runtime.nodes.links import Diagnostics
 from pursue_runtime.nodes.membership import Membership
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, init_node, subscribe
-from pursue_runtime.nodes.process import lower_priority, restart_process
+from pursue_runtime.nodes.node import (
+    ERROR,
+    OK,
+    WARN,
+    Ending,
+    NodeReport,
+    init_node,
+    lower_priority,
+    restart_process,
+    subscribe,
+)
 from pursue_runtime.nodes.publishing import Newcomers, listeners
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.nodes.ui_page import UIPage
 from pursue_runtime.nodes.ui_state import GATHERING, READY, RUNNING, STARTING, UIState
-from pursue_runtime.nodes.ui_traffic import Traffic
-from pursue_runtime.nodes.ui_typed import Typed
+from pursue_runtime.nodes.ui_terminal import Traffic, Typed
 from pursue_runtime.state import STOPPED, WAITING, WON, SystemState
 from pursue_runtime.strategy import Strategy, parse_plan
-from pursue_runtime.ui.environment import make_player
+from pursue_runtime.ui.environment import TraceError, make_player
 from pursue_runtime.ui.mission_view import Environment, reporters
 from pursue_runtime.ui.options import ARGUMENTS, Options, read_options, read_told
 from pursue_runtime.ui.strategies import strategies_in
 from pursue_runtime.ui.terminal import BAD, BOLD, GOOD, PLAIN, on_terminal
-from pursue_runtime.ui.trace import TraceError
 from pursue_runtime.ui.verdict import ALONE, INTERRUPTED, NOT_STARTED, Verdict, drop_interrupted, write_verdict
 
 RETRY = 1.0  # real seconds until `_start_` is published again
@@ -72,7 +79,7 @@ class UI(UIState):
         if self.at_doors.has_some:
             subscribe(DOORS, String, self.on_doors, ending, queue_size=10, tcp_nodelay=True)
         self.pulses = subscribe("/diagnostics", DiagnosticArray, self.on_diagnostics, ending, queue_size=100)
-        Diagnostics(self.report, ending, Links(self.states, self.pulses, ending=ending, lost=self.master_lost).amend)
+        Diagnostics(self.report, ending, self.states, self.pulses, lost=self.master_lost)
 
     # Callbacks --------------------------------------------------------------------------------------------------------
 
@@ -131,9 +138,9 @@ class UI(UIState):
         if plan.get("mission", "") not in ("", self.membership.source.mission):
             return
         with self.lock:
-            self.page.on_plan(plan)
             with contextlib.suppress(DataError):  # the nodes that need it say what is wrong with it
-                self.mission.add_turns(plan["plan"], strategies_in(plan))
+                self.strategies[plan["plan"]] = strategies_in(plan)
+            self.page.on_plan(plan)
             if orders is not None:
                 self.mission.add_plan(plan["plan"], orders)
                 self.act()

@@ -12,18 +12,18 @@ import rospy
 
 from pursue_runtime.event_words import FINISH, STOP
 from pursue_runtime.folders import scenario_folder
+from pursue_runtime.links import LOOK, Presence
 from pursue_runtime.nodes.links import traffic
 from pursue_runtime.nodes.node import start_thread
 from pursue_runtime.nodes.positions import watch_positions
 from pursue_runtime.nodes.ui_state import UIState
-from pursue_runtime.nodes.ui_typed import Typed
+from pursue_runtime.nodes.ui_terminal import Typed
+from pursue_runtime.sentences import Troubles, in_words
 from pursue_runtime.state import LIVE, RUNNING, WAITING, SystemState
-from pursue_runtime.troubles import Troubles
 from pursue_runtime.ui.mission_view import MARGIN
-from pursue_runtime.ui.page import Facts
+from pursue_runtime.ui.page import BAD, GOOD, NOTE, Facts
 from pursue_runtime.ui.page_server import ADDRESS, PageServer, format_address, open_page
 from pursue_runtime.ui.past_missions import PastMissions, shown_missions, workspace_of
-from pursue_runtime.ui.presence import LOOK, Presence
 from pursue_runtime.ui.requests import PageRequest, Presses
 
 NO_ANSWER = "The observer does not answer"
@@ -56,7 +56,8 @@ class UIPage:
     def open(self, settings: Mapping[str, Any]) -> None:
         """Serve the page, where one is wanted. Raises ParameterError and other DataErrors."""
         ui = self._ui
-        self._board = open_page(ui.model, ui.options, settings, ui.membership.source, self, ui.at_doors)
+        shown = ui.strategies, ui.at_doors
+        self._board = open_page(ui.model, ui.options, settings, ui.membership.source, self, *shown)
         if self._board is not None:
             start_thread("presence", self._watch, ui.ending)
             watch_positions([robot.name for robot in ui.model.of_kind("robot")], ui.ending, self._board.on_positions)
@@ -78,12 +79,12 @@ class UIPage:
         self._received = (time.time(), rospy.get_time())
         self._presses.on_state(state)
         if self._board is not None:
-            self._board.on_state(state, at)
+            self._board.page.on_state(state, at)
 
     def on_plan(self, plan: Mapping[str, Any]) -> None:
         """Take a new plan, as `parse_plan` returns it."""
         if self._board is not None:
-            self._board.on_plan(plan)
+            self._board.page.add_plan(plan)
 
     def show(self) -> None:
         """Send the present view to the page."""
@@ -94,7 +95,7 @@ class UIPage:
         """Show the end of the mission."""
         self._ended, self._looks = time.monotonic(), 0  # now there are other files
         if self._board is not None:
-            self._board.end(at, verdict)
+            self._board.note(at, verdict[1], BAD if verdict[0] else GOOD)
 
     def after_end(self, state: SystemState) -> None:
         """Take a state that comes after the end: the next mission waits, or somebody else has started it."""
@@ -110,12 +111,13 @@ class UIPage:
         state = ui.mission.state
         for text in self._troubles.take(node, values, state.reason if state is not None else ""):
             if self._board is not None and ui.verdict is None:
-                self._board.on_trouble(ui.mission.elapsed(rospy.get_time()), text)
+                self._board.note(ui.mission.elapsed(rospy.get_time()), in_words(text, ui.model.shown), BAD)
 
     def on_answer(self, at: float, order: str, accepted: bool, text: str) -> None:
         """Show the answer to an order."""
         if self._board is not None:
-            self._board.on_answer(at, order, accepted, text)
+            self._board.page.on_answer(at, order, accepted, text)
+            self._board.show()
 
     def on_recorder(self, file: str) -> None:
         """Take the name of the file that the recorder writes."""
@@ -209,7 +211,9 @@ class UIPage:
         if not ui.observer or ui.verdict is not None or self._board is None:
             return
         if self._presence.look(*traffic(ui.observer, ui.states, ui.pulses)):
-            self._board.on_presence(ui.mission.elapsed(self._received[1]), self._presence.answers)
+            at, answers = ui.mission.elapsed(self._received[1]), self._presence.answers
+            text = "the observer answers again" if answers else "the observer does not answer"
+            self._board.note(at, text, NOTE if answers else BAD)
         if self._stopping:
             ui.events.publish(STOP)
         state = ui.mission.state

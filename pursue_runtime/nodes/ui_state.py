@@ -14,13 +14,12 @@ from pursue_runtime.event_words import EVENTS
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import Ending
-from pursue_runtime.nodes.ui_orders import UIOrders
-from pursue_runtime.ui.at_doors import AtDoors
+from pursue_runtime.nodes.order_desk import UIOrders
 from pursue_runtime.ui.mission_view import Environment, MissionView, Readiness
 from pursue_runtime.ui.options import Options
 from pursue_runtime.ui.strategies import strategies_of
 from pursue_runtime.ui.terminal import Terminal
-from pursue_runtime.ui.turns import Turns
+from pursue_runtime.ui.waits import AtDoors, Turns
 
 GATHERING, READY, STARTING, RUNNING = "waiting for the nodes", "ready", "starting", "running"
 
@@ -36,7 +35,9 @@ class UIState:
         self, options: Options, membership: Membership, ending: Ending, player: Environment, model: Model
     ) -> None:
         self.options, self.membership, self.ending, self.model = options, membership, ending, model
-        turns = Turns(model, strategies_of(membership.source))
+        self.strategies = {0: strategies_of(membership.source)}
+        """Those of all controllers by the number of their plan."""
+        turns = Turns(model, self.strategies)
         self.at_doors = AtDoors(membership.source.read("ui.yaml"), model.shown)
         self.mission = MissionView(model, player, membership.people(), turns, self.at_doors)
         self.readiness = Readiness(options.nodes)

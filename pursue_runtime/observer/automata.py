@@ -6,7 +6,7 @@ Times are seconds of ROS time, delays are time units.
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Dict, Iterable, List, Mapping, MutableMapping, Optional, Tuple
+from typing import Dict, Iterable, List, Mapping, MutableMapping, Optional, Sequence, Tuple
 from weakref import WeakKeyDictionary
 
 from transitions import Machine
@@ -136,13 +136,11 @@ class Automata:
             self._values.update(edge.assign)
             self._zeros.update(dict.fromkeys(edge.resets, now))
 
-    def turn(self, moves: Iterable[Move], now: float) -> None:
+    def turn(self, moves: Sequence[Move], now: float) -> None:
         """Apply moves of robots that turned round on their way at that time: their edges start at its other end."""
-        self._position = None
         for name, edge in moves:
-            self._machines[name].set(edge.target)
-            self._values.update(edge.assign)
-            self._zeros.update(dict.fromkeys(edge.resets, now))
+            self._machines[name].set(edge.source)
+        self.take(moves, now)
 
     def set_clocks(self, since: Mapping[str, float]) -> None:
         """Set clocks, by the times since which they run."""

@@ -15,9 +15,20 @@ from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tup
 
 from pursue_runtime.data import DataError
 from pursue_runtime.folders import sync_folder
-from pursue_runtime.observer.mark import MARK, Mark, MarkFile, Rank, read_mark
 from pursue_runtime.observer.mission import Mission
-from pursue_runtime.observer.records import FORMAT, Record, RecordFile, RecordsRead, read_records
+from pursue_runtime.observer.records import (
+    FORMAT,
+    MARK,
+    Mark,
+    MarkFile,
+    Rank,
+    Record,
+    RecordFile,
+    RecordsRead,
+    read_mark,
+    read_records,
+)
+from pursue_runtime.sentences import Log
 from pursue_runtime.state import ENDED, WAITING, SystemState
 
 ADOPTED = "adopted"
@@ -53,8 +64,6 @@ DELAY = 0.01
 
 MAX_JOURNALS = 20
 """So many journals of a scenario are kept."""
-
-Log = Callable[[str, str], None]
 
 
 class Journal:

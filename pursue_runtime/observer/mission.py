@@ -26,9 +26,9 @@ from pursue_runtime.model import Assumption, Move, Position
 from pursue_runtime.observer import life
 from pursue_runtime.observer.assumptions import Breach, breach, overstayed
 from pursue_runtime.observer.ending import has_come
-from pursue_runtime.observer.lateness import late_words, untimely_words
 from pursue_runtime.observer.mission_orders import NOTHING, MissionOrders
 from pursue_runtime.observer.mission_status import IS_LATE
+from pursue_runtime.observer.off_plan import late_words, untimely_words
 from pursue_runtime.observer.orders import first_overdue
 from pursue_runtime.observer.planning import stays
 from pursue_runtime.orders import Order

@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Collection, Dict, List, Optional, Set, Tuple
+from typing import Any, Collection, Dict, List, Optional, Set, Tuple
 
 from pursue_runtime.event_words import Word
 from pursue_runtime.model import ACTING, Model, Position
 from pursue_runtime.observer.automata import Automata
-from pursue_runtime.observer.beginnings import Beginnings
 from pursue_runtime.observer.ending import Ending
 from pursue_runtime.observer.life import Life
 from pursue_runtime.observer.ordering import Ordering
 from pursue_runtime.observer.orders import Orders
 from pursue_runtime.observer.planning import Planning
-from pursue_runtime.observer.robots import Robots
-from pursue_runtime.observer.service import Service
-from pursue_runtime.observer.shared_ends import ALL, SharedEnds
+from pursue_runtime.observer.reports import ALL, Beginnings, SharedEnds
+from pursue_runtime.observer.robots import Robots, Service
 from pursue_runtime.observer.ways import Ways
-from pursue_runtime.sentences import Told, in_words
+from pursue_runtime.sentences import Log, Told, in_words
 from pursue_runtime.state import RUNNING, WON, SystemState
 from pursue_runtime.strategy import Cover, Entry
-
-Log = Callable[[str, str], None]
-"""Takes a level (debug, info, warn, err) and a sentence."""
 
 COUNTED = ("taken", "stale", "held", "uncommanded", "impossible", "untimely", "unreadable", "uncovered")
 

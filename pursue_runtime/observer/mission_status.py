@@ -11,8 +11,8 @@ from pursue_runtime.model import Model, Position
 from pursue_runtime.observer import life
 from pursue_runtime.observer.assumptions import broken_reason
 from pursue_runtime.observer.mission_state import MissionState
+from pursue_runtime.observer.off_plan import uncovered_position, uncovered_reason
 from pursue_runtime.observer.planning import PlanRequest, covers, is_uncovered, without_commands
-from pursue_runtime.observer.uncovered import uncovered_position, uncovered_reason
 from pursue_runtime.sentences import as_sentence, in_words, marked
 from pursue_runtime.state import ENDED, HOLDING, LIVE, RUNNING, SystemState
 from pursue_runtime.state_checks import adoptable

@@ -12,9 +12,10 @@ from typing import Any, Callable, Collection, List, Mapping, NamedTuple, Optiona
 from pursue_runtime.data import DataError
 from pursue_runtime.event_words import EVENTS, STOP, said_at
 from pursue_runtime.observer.journal import Journal
-from pursue_runtime.observer.mark import Rank
 from pursue_runtime.observer.mission import Mission
+from pursue_runtime.observer.records import Rank
 from pursue_runtime.observer.witnesses import find_state
+from pursue_runtime.sentences import Log
 from pursue_runtime.state import LIVE, SystemState
 
 PATIENCE = 5.0
@@ -100,7 +101,7 @@ class Inbox:
         self,
         mission: Mission,
         journal: Journal,
-        log: Callable[[str, str], None],
+        log: Log,
         returning: Optional[Returning] = None,
         clock: Callable[[], float] = since_boot,
     ) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Mapping, NamedTuple
 
 from pursue_runtime.arguments import CONFIG, Argument, command
-from pursue_runtime.observer.shared_ends import ALL, WHOSE
+from pursue_runtime.observer.reports import ALL, WHOSE
 from pursue_runtime.parameters import choice, flag, number
 
 ARGUMENTS = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Dict, List, Mapping, NamedTuple, Optional, Tuple
 
-from pursue_runtime.observer.mark import Rank
+from pursue_runtime.observer.records import Rank
 from pursue_runtime.state import ENDED, LIVE, WAITING, SystemState
 
 PATIENCE = 5.0

@@ -18,6 +18,7 @@ from pursue_runtime.bundle import (
     LIMIT,
     ORDER_LENGTH,
     PREPARE,
+    KeyFolder,
     Keys,
     Order,
     Refused,
@@ -31,10 +32,10 @@ from pursue_runtime.model import Model
 from pursue_runtime.poses import POSES, read_poses
 from pursue_runtime.rate_limited_log import RateLimitedLog
 from pursue_runtime.reader.contents import StoreError, StoreState, is_signed, manifest
-from pursue_runtime.reader.store import Log, Store
+from pursue_runtime.reader.store import Store
+from pursue_runtime.sentences import Log
 from pursue_runtime.state import LATE, LIVE, SystemState, older
 from pursue_runtime.strategy import Strategy, read_cover, read_strategies
-from pursue_runtime.trusted_keys import KeyFolder
 
 PATIENCE = 5.0
 """Seconds without a state, at the start or after one of no running mission, after which no mission runs."""

@@ -31,15 +31,13 @@ from pursue_runtime.reader.contents import (
     read_state,
     stored_digests,
 )
+from pursue_runtime.sentences import Log
 
 KEEP = 5
 """So many earlier missions are kept, unless a parameter sets another number."""
 
 _NEW = ".new-"  # what is being written; after a start it is what a dead process has left
 _FOLDER_MODE, _FILE_MODE = 0o700, 0o600
-
-Log = Callable[[str, str], None]
-"""Takes a level (info, warn, err) and a sentence."""
 
 
 class Store:

@@ -14,9 +14,9 @@ from pursue_runtime.locations import action_of, is_action, movement, place_of
 from pursue_runtime.model import Model
 from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, LIVE, SystemState
-from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui.course import Step, course, first_commands
 from pursue_runtime.ui.page import FloorPlan
+from pursue_runtime.ui.strategies import Strategies
 
 Point = Tuple[float, float]
 Colour = Tuple[float, float, float]
@@ -71,17 +71,13 @@ def read_spots(settings: Mapping[str, Any], plan: FloorPlan) -> Spots:
 class Picture:
     """What there is to show of one mission, by its states."""
 
-    def __init__(self, model: Model, plan: FloorPlan, spots: Spots, strategies: Sequence[Strategy] = ()) -> None:
-        """`strategies`: those of all controllers, where they are known."""
+    def __init__(self, model: Model, plan: FloorPlan, spots: Spots, strategies: Strategies) -> None:
+        """`strategies`: those of all plans, where they are known."""
         self._model, self._plan, self._spots = model, plan, spots
-        self._strategies: Dict[int, Sequence[Strategy]] = {0: strategies}
+        self._strategies = strategies
         self._size = _size(list(plan.places.values()))
         self._ways = {movement(a, b): (a, b) for a in plan.places for b in plan.places}
         self._still = [*self._way_marks(), *self._place_marks(), *self._spot_marks()]
-
-    def add_plan(self, number: int, strategies: Sequence[Strategy]) -> None:
-        """Take the strategies of a new plan."""
-        self._strategies[number] = strategies
 
     def marks(self, state: Optional[SystemState]) -> List[Mark]:
         """Return everything to show in a state; None: none has been received."""

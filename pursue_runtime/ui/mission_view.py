@@ -27,8 +27,7 @@ from pursue_runtime.sentences import Told, in_words
 from pursue_runtime.simulator.simulator import report_word, reports
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Entry, Plans, Strategy
-from pursue_runtime.ui.at_doors import AtDoors
-from pursue_runtime.ui.turns import Turns
+from pursue_runtime.ui.waits import AtDoors, Turns
 from pursue_runtime.vocabulary import deed, instruction, is_fact, said_at_start, sentence, where
 from pursue_runtime.zones import due
 
@@ -174,7 +173,7 @@ class MissionView:
         self.counts = "time units"  # what times count, as people say it
         self._model, self._told = model, Told()
         self._environment = player
-        self._turns, self._at_doors = turns or Turns(model, ()), at_doors or AtDoors({}, str)
+        self._turns, self._at_doors = turns or Turns(model, {}), at_doors or AtDoors({}, str)
         self._orders = None if orders is None else Plans(orders)
         self._since: Dict[Entry, SystemState] = {}  # in which is decided what stands in the present state
         self._ordered: Tuple[int, float, int] = (-1, 0.0, 0)  # the state of the last order, when (real), how often
@@ -191,10 +190,6 @@ class MissionView:
         """What people do by a new plan."""
         if self._orders is not None:
             self._orders.add(plan, orders)
-
-    def add_turns(self, plan: int, strategies: Sequence[Strategy]) -> None:
-        """Whose turn it is at places by the strategies of a new plan."""
-        self._turns.add_plan(plan, strategies)
 
     def on_state(self, state: SystemState, now: float) -> List[str]:
         """A state came; the lines to print."""

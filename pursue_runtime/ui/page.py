@@ -5,6 +5,7 @@ Moments are time units since the start of the mission.
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.data import reading
@@ -15,15 +16,14 @@ from pursue_runtime.poses import read_poses
 from pursue_runtime.sentences import Told, in_words, listed
 from pursue_runtime.simulator.simulator import end_window, report_word
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState
-from pursue_runtime.strategy import Strategy
-from pursue_runtime.ui.at_doors import AtDoors
 from pursue_runtime.ui.floor import Floor
 from pursue_runtime.ui.lanes import Lanes
 from pursue_runtime.ui.mission_view import possible_words, tasks
 from pursue_runtime.ui.outlook import Outlook
 from pursue_runtime.ui.promise import NOTHING, Guarantee, Promise, objectives_now, with_written
 from pursue_runtime.ui.statuses import Status, status_texts
-from pursue_runtime.ui.strategies import strategies_in
+from pursue_runtime.ui.strategies import Strategies
+from pursue_runtime.ui.waits import AtDoors
 from pursue_runtime.vocabulary import awaited, begin_of, deed, place, said_at_start, sentence, value_found, where
 
 MAX_ENTRIES = 300  # entries of the log
@@ -86,12 +86,12 @@ class Page:
         reporters: Sequence[str] = (),
         statuses: Sequence[Status] = (),
         promise: Promise = NOTHING,
-        strategies: Sequence[Strategy] = (),
+        strategies: Strategies = MappingProxyType({}),
         floor: Optional[Floor] = None,
         at_doors: Optional[AtDoors] = None,
     ) -> None:
         """`reporters`: the agents whose ends are reported on the page; `statuses`: the words for all but agents;
-        `promise`: what is to be achieved; `strategies`: those of all controllers, where they are known; `floor`: what
+        `promise`: what is to be achieved; `strategies`: those of all plans, where they are known; `floor`: what
         lies under the map; `at_doors`: who waits for which door or lift."""
         self._model = model
         self._told, self._at_doors = Told(), at_doors or AtDoors({}, str)
@@ -170,9 +170,8 @@ class Page:
         }
 
     def add_plan(self, plan: Mapping[str, Any]) -> None:
-        """Take a new plan, as `parse_plan` returns it. Raises DataError."""
+        """Take a new plan, as `parse_plan` returns it; its strategies are among those of the page."""
         self._guarantee.add_plan(plan["plan"], plan)
-        self._outlook.add_plan(plan["plan"], strategies_in(plan))
 
     def on_state(self, state: SystemState, at: float) -> List[Dict[str, Any]]:
         """A state came; what is new in the log."""
@@ -207,10 +206,6 @@ class Page:
         answer = {"at": _round(at), "order": order, "accepted": accepted, "text": in_words(text, self._model.shown)}
         self._answers = [answer, *self._answers][:SHOWN_ANSWERS]
         self.note(at, f"{order}: {answer['text']}", GOOD if accepted else BAD)
-
-    def trouble(self, at: float, text: str) -> None:
-        """Adds to the log what a node says of its robots."""
-        self.note(at, in_words(text, self._model.shown), BAD)
 
     def note(self, at: float, text: str, kind: str = NOTE, word: str = "") -> Dict[str, Any]:
         """Adds an entry to the log, and returns it."""

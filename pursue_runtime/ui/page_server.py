@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import threading
 from typing import Any, Dict, List, Mapping, Optional, Protocol, Sequence, Tuple
 
-from pursue_runtime.data import DataError
 from pursue_runtime.missions import Source
 from pursue_runtime.model import Model
 from pursue_runtime.parameters import ParameterError
-from pursue_runtime.state import SystemState
-from pursue_runtime.ui.at_doors import AtDoors
 from pursue_runtime.ui.floor import read_floor
 from pursue_runtime.ui.mission_view import reporters
 from pursue_runtime.ui.options import Options
-from pursue_runtime.ui.page import BAD, GOOD, NOTE, Facts, Page, read_floor_plan
+from pursue_runtime.ui.page import Facts, Page, read_floor_plan
 from pursue_runtime.ui.promise import read_promise
 from pursue_runtime.ui.requests import PageRequest, read_request
 from pursue_runtime.ui.statuses import read_statuses
-from pursue_runtime.ui.strategies import strategies_of
+from pursue_runtime.ui.strategies import Strategies
+from pursue_runtime.ui.waits import AtDoors
 
 STATIC = os.path.join(os.path.dirname(os.path.realpath(__file__)), "static")
 """The folder of the page's files."""
@@ -46,20 +43,11 @@ class PageServer:
     """Sends everything new to every page."""
 
     def __init__(self, page: Page, node: PageNode) -> None:
-        self._page, self._node = page, node
+        self.page, self._node = page, node
         self._shown = 0
         self._real: Dict[str, Dict[str, Any]] = {"positions": {}, "paths": {}}
         self._missions: List[Dict[str, Any]] = []
         self.web: Any = None
-
-    def on_state(self, state: SystemState, at: float) -> None:
-        """Take a state, `at` time units after the start."""
-        self._page.on_state(state, at)
-
-    def on_plan(self, plan: Mapping[str, Any]) -> None:
-        """Take a new plan, as `parse_plan` returns it: what the page says of it needs its strategies."""
-        with contextlib.suppress(DataError):  # the nodes that need it say what is wrong with it
-            self._page.add_plan(plan)
 
     def on_positions(
         self, positions: Mapping[str, Sequence[float]], paths: Mapping[str, Sequence[Sequence[float]]]
@@ -71,25 +59,9 @@ class PageServer:
         }
         self.web.send({"type": "positions", **self._real})
 
-    def end(self, at: float, verdict: Tuple[int, str]) -> None:
-        """Show the end of the mission; `verdict` is the exit status and a sentence."""
-        self._page.note(at, verdict[1], BAD if verdict[0] else GOOD)
-        self.show()
-
-    def on_trouble(self, at: float, text: str) -> None:
-        """Show what is wrong with a robot."""
-        self._page.trouble(at, text)
-        self.show()
-
-    def on_answer(self, at: float, order: str, accepted: bool, text: str) -> None:
-        """Show the answer to an order."""
-        self._page.on_answer(at, order, accepted, text)
-        self.show()
-
-    def on_presence(self, at: float, answers: bool) -> None:
-        """Show that the observer does not answer, or does again."""
-        self._page.note(at, "the observer answers again" if answers else "the observer does not answer",
-                        NOTE if answers else BAD)
+    def note(self, at: float, text: str, kind: str) -> None:
+        """Add an entry to the log of every page."""
+        self.page.note(at, text, kind)
         self.show()
 
     def show_missions(self, missions: List[Dict[str, Any]]) -> None:
@@ -100,17 +72,17 @@ class PageServer:
 
     def show(self) -> None:
         """Send the present view to every page."""
-        fresh = [entry for entry in self._page.log if entry["n"] > self._shown]
+        fresh = [entry for entry in self.page.log if entry["n"] > self._shown]
         self._shown = fresh[-1]["n"] if fresh else self._shown
-        self.web.send({"type": "view", "view": self._page.view(self._node.facts()), "log": fresh})
+        self.web.send({"type": "view", "view": self.page.view(self._node.facts()), "log": fresh})
 
     # Called by the server, in its own thread --------------------------------------------------------------------------
 
     def first_message(self) -> Dict[str, Any]:
         """Return the first message for a page."""
         with self._node.lock:
-            view = self._page.view(self._node.facts())
-            shown = {"scene": self._page.scene(), "view": view, "log": self._page.log, "missions": self._missions}
+            view = self.page.view(self._node.facts())
+            shown = {"scene": self.page.scene(), "view": view, "log": self.page.log, "missions": self._missions}
             return {"type": "hello", **shown, **self._real}
 
     def on_message(self, message: Any) -> str:
@@ -147,7 +119,8 @@ def open_page(
     settings: Mapping[str, Any],
     source: Source,
     node: PageNode,
-    at_doors: Optional[AtDoors] = None,
+    strategies: Strategies,
+    at_doors: AtDoors,
 ) -> Optional[PageServer]:
     """Serves a page, where one is wanted, at the address of the one before if the node has begun anew. Raises
     ParameterError and other DataErrors.
@@ -165,7 +138,7 @@ def open_page(
     people = reporters(model, options.ends, settings)
     words = read_statuses(settings), read_promise(settings)
     floor = read_floor(source.folder) if source.digests is None else None  # it is the workspace's, not a mission's
-    page = Page(model, read_floor_plan(poses, settings), people, *words, strategies_of(source), floor, at_doors)
+    page = Page(model, read_floor_plan(poses, settings), people, *words, strategies, floor, at_doors)
     board = PageServer(page, node)
     try:
         board.web = Web(

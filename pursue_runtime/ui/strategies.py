@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, List, Mapping
+from typing import Any, List, Mapping, Sequence
 
 from pursue_runtime.data import reading
 from pursue_runtime.missions import Source
@@ -10,6 +10,10 @@ from pursue_runtime.strategy import Strategy, read_strategies
 
 STRATEGIES = "strategies.yaml"
 """The data file with the strategies of all controllers; missions with large ones have none."""
+
+Strategies = Mapping[int, Sequence[Strategy]]
+"""The strategies of all controllers by the number of their plan, as far as they are known: 0 is the workspace's own,
+later ones are added."""
 
 
 def strategies_of(source: Source) -> List[Strategy]:

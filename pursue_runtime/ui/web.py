@@ -7,7 +7,6 @@ names), and for any address but loopback only those who know the token. It comes
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import hashlib
 import hmac
 import html
@@ -16,7 +15,6 @@ import json
 import re
 import secrets
 import socket
-import threading
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Callable, List, Mapping, Optional, Tuple
@@ -27,7 +25,7 @@ from tornado.netutil import bind_sockets
 from tornado.web import Application, HTTPError, RequestHandler
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
-from pursue_runtime.http_server import LimitedServer, drop_chunks
+from pursue_runtime.http_server import Background, LimitedServer, Service, drop_chunks
 from pursue_runtime.slots import Slots, is_loopback
 
 SCRIPTS = ("agents", "confirm", "connection", "missions", "objectives", "orders", "page", "plan", "press", "timeline")
@@ -69,7 +67,7 @@ def is_address(host: str) -> bool:
         return False
 
 
-class Web:
+class Web(Service):
     """The server, with an event loop in a thread of its own."""
 
     def __init__(
@@ -101,11 +99,10 @@ class Web:
             hint = "choose another --port (0: any that is free) or --host"
             raise WebError(f"cannot serve the page on {host}, port {port}: {problem}; {hint}") from problem
         self.host, self.port = host, int(self._sockets[0].getsockname()[1])
-        self._loop = asyncio.new_event_loop()
-        self._closing, self._why = False, ""
-        self._closed: Optional[asyncio.Event] = None  # belongs to the loop, and is made there
-        self._server: Optional[LimitedServer] = None  # likewise
-        self._thread = threading.Thread(target=self._run, name="web", daemon=True)
+        self._why = ""
+        self._server: Optional[LimitedServer] = None  # belongs to the loop, and is made there
+        self._ticks: Optional["asyncio.Future[None]"] = None  # likewise
+        self._background = Background((self,))
 
     @property
     def url(self) -> str:
@@ -123,61 +120,52 @@ class Web:
 
     def start(self) -> None:
         """Serves, until `close`."""
-        self._thread.start()
+        self._background.start()
 
     def send(self, message: Mapping[str, Any]) -> None:
         """Send a message to every page; from any thread."""
-        text = json.dumps(message, allow_nan=False)
-        with contextlib.suppress(RuntimeError):  # the loop has ended
-            self._loop.call_soon_threadsafe(self._send_text, text)
+        self._background.call(self._send_text, json.dumps(message, allow_nan=False))
 
     def close(self, why: str = "the mission has ended") -> None:
         """Lets what was sent go out, closes every page with this reason, and ends."""
         self._why = why
-        with contextlib.suppress(RuntimeError):  # the loop has ended
-            self._loop.call_soon_threadsafe(self._finish)
-        if self._thread.is_alive():
-            self._thread.join(LAST_WORDS)
+        self._background.close(LAST_WORDS)
 
     # In the thread of the server --------------------------------------------------------------------------------------
 
-    def _run(self) -> None:
-        asyncio.set_event_loop(self._loop)
-        try:
-            self._loop.run_until_complete(self._serve())
-        finally:
-            self._loop.close()
-
-    async def _serve(self) -> None:
+    def open(self) -> None:
+        """Serve from now on."""
         paths: List[Any] = [(path, File, {"web": self}) for path in self._files]
         application = _Requests(
             [*paths, ("/live", PageSocket, {"web": self})],
             default_handler_class=NotFound, default_handler_args={"web": self}, log_function=lambda _: None,
             websocket_max_message_size=MAX_MESSAGE, websocket_ping_interval=10, websocket_ping_timeout=30,
         )
-        self._server = server = LimitedServer(
+        self._server = LimitedServer(
             application, max_header_size=4 * MAX_MESSAGE, max_body_size=MAX_MESSAGE, max_buffer_size=16 * MAX_MESSAGE,
             idle_connection_timeout=REQUEST_TIMEOUT, body_timeout=REQUEST_TIMEOUT,
         )
-        server.limit(MAX_CONNECTIONS, MAX_CONNECTION_TIME, lambda: None)
-        server.add_sockets(self._sockets)
-        self._closed = asyncio.Event()
-        while not self._closing:
-            with contextlib.suppress(asyncio.TimeoutError):
-                await asyncio.wait_for(self._closed.wait(), TICK)
+        self._server.limit(MAX_CONNECTIONS, MAX_CONNECTION_TIME, lambda: None)
+        self._server.add_sockets(self._sockets)
+        self._ticks = asyncio.ensure_future(self._tick())
+
+    async def _tick(self) -> None:
+        """Tell pages what time it is, as long as they do not hear that by a view."""
+        while True:
+            await asyncio.sleep(TICK)
             now = self._present() if self._pages else None
             if now is not None:
                 self._send_text(json.dumps({"type": "tick", "now": now}))
-        server.stop()
-        for page in list(self._pages):
-            page.close(1000, self._why)
-        await asyncio.sleep(0.2)
-        await server.close_all_connections()
 
-    def _finish(self) -> None:
-        self._closing = True
-        if self._closed is not None:
-            self._closed.set()
+    async def end(self) -> None:
+        """Close every page with the reason, and all connections."""
+        if self._server is not None and self._ticks is not None:
+            self._ticks.cancel()
+            self._server.stop()
+            for page in list(self._pages):
+                page.close(1000, self._why)
+            await asyncio.sleep(0.2)
+            await self._server.close_all_connections()
 
     def _send_text(self, text: str) -> None:
         for page in list(self._pages):

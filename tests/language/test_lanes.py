@@ -17,7 +17,7 @@ from pursue_gen.solving.rules import Rules
 from pursue_gen.tga import translate
 from pursue_gen.tools.draw.view import view
 from pursue_gen.tools.lsp.hover import hover
-from pursue_gen.tools.simulation.driven import Driven
+from pursue_gen.tools.simulation.recorder import Driven
 
 FLOOR = """\
 poi "a"

@@ -29,10 +29,9 @@ from pursue_gen.synthesis.strategy import Block, Command, Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Automaton, ClockBound, Guard, Network, Objective
 from pursue_gen.tga.watchers import Watcher, with_watchers
-from pursue_gen.tools.simulation.make import make_case
 from pursue_gen.tools.simulation.mission import simulate_mission
 from pursue_gen.tools.simulation.outcome import GOAL, SAFE, Settings
-from pursue_gen.tools.simulation.runs import MissionRunner
+from pursue_gen.tools.simulation.runs import MissionRunner, make_case
 from tests.choices import member_of
 from tests.oracle.checker import natively
 from tests.proof.test_stages import of_the_whole

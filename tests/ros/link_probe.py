@@ -18,8 +18,8 @@ import rospy
 from rospy.impl.tcpros_base import TCPROSServer
 from std_msgs.msg import String
 
-from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import OK, Diagnostics, Ending, NodeReport, init_node
+from pursue_runtime.nodes.links import Diagnostics, pulses_of_all
+from pursue_runtime.nodes.node import OK, Ending, NodeReport, init_node
 
 
 def be_deaf() -> None:
@@ -41,9 +41,8 @@ def main(role: str) -> None:
         be_deaf()
         role = "talker"
     init_node(role)
-    pulses = rospy.Subscriber("/diagnostics", rospy.AnyMsg, lambda _: None, queue_size=100)
     ending = Ending()
-    Diagnostics(lambda: NodeReport(True, OK, "fine", {}), ending, Links(pulses, ending=ending).amend)
+    Diagnostics(lambda: NodeReport(True, OK, "fine", {}), ending, pulses_of_all(ending), lost=lambda _: None)
     if role == "listener":
         # In one piece: an old and a new connection may speak at the same time, each in a thread of its own.
         rospy.Subscriber("pursue/events", String, lambda message: os.write(1, f"{message.data}\n".encode()))

@@ -22,7 +22,7 @@ from pursue_gen.workspace import Options, write_workspace
 from pursue_runtime.model import Model
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import read_strategies
-from pursue_runtime.ui.turns import Turns
+from pursue_runtime.ui.waits import Turns
 from tests.waiting import PATIENCE
 
 pytestmark = pytest.mark.ros
@@ -87,7 +87,7 @@ def test_a_robot_that_stands_makes_others_wait_and_nothing_else(ros: Ros, tmp_pa
     ends, since = ends_of(won.network), dict.fromkeys(ROBOTS, ("", 0.0))
     (data,) = folder.glob("src/*/config/strategies.yaml")
     model, strategies = (yaml.safe_load(file.read_text()) for file in (data.with_name("model.yaml"), data))
-    turns = Turns(Model(model), read_strategies(strategies))
+    turns = Turns(Model(model), {0: read_strategies(strategies)})
     deadline = time.monotonic() + 4 * PATIENCE
     with launched(ros, lay_over(ros, folder), tmp_path, ROBOTS, **PLAYED, time_unit=UNIT, planner="off") as run:
         while (state := run.now()).status not in ENDED:

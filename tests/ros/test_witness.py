@@ -13,8 +13,7 @@ from launched_mission import LaunchedMission, launched
 from ros_world import Ros
 from test_faults import FOR_EVER, NODES, ORDERS, check_steps, check_time, orders_of
 
-from pursue_runtime.observer.mark import MARK
-from pursue_runtime.observer.records import read_records
+from pursue_runtime.observer.records import MARK, read_records
 
 Build = Callable[..., Path]
 

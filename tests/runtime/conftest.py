@@ -7,8 +7,7 @@ from typing import Any, Callable, Dict, Iterator
 
 import pytest
 
-from pursue_runtime.observer.mark import MarkFile
-from pursue_runtime.observer.records import RecordFile
+from pursue_runtime.observer.records import MarkFile, RecordFile
 from pursue_runtime.reader.store import Store
 from pursue_runtime.simulator.clock import ClockFile
 

@@ -13,11 +13,11 @@ import pytest
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
 from pursue_runtime import bundle as mission_bundle
-from pursue_runtime.manager.background import Background, bind
+from pursue_runtime.bundle import KeyFolder
+from pursue_runtime.http_server import Background, bind
 from pursue_runtime.manager.manager import Manager, RequestLog
 from pursue_runtime.manager.server import Limits, Server
 from pursue_runtime.manifest import make_manifest
-from pursue_runtime.trusted_keys import KeyFolder
 from tests.waiting import PATIENCE, connected, may_close, rest
 
 pytest.importorskip("tornado", reason="tornado is not installed")

@@ -14,13 +14,13 @@ from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tup
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
 from pursue_runtime import bundle as desk_bundle
+from pursue_runtime.bundle import KeyFolder
 from pursue_runtime.manifest import make_manifest
 from pursue_runtime.reader import reader as reader_core
 from pursue_runtime.reader.contents import StoreState, read_state
 from pursue_runtime.reader.reader import Reader
 from pursue_runtime.reader.store import Store
 from pursue_runtime.state import SystemState
-from pursue_runtime.trusted_keys import KeyFolder
 
 OWN = ""
 PATIENCE = 5.0

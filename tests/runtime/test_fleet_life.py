@@ -23,6 +23,7 @@ from pursue_gen.tools.transport import sender
 from pursue_gen.tools.transport.client import Answer, Robot, Status, Unreached
 from pursue_runtime import bundle as mission_bundle
 from pursue_runtime import folders
+from pursue_runtime.bundle import KeyFolder
 from pursue_runtime.controller.follower import Follower
 from pursue_runtime.data import DataError
 from pursue_runtime.manifest import make_manifest
@@ -33,7 +34,6 @@ from pursue_runtime.reader.contents import find_damage
 from pursue_runtime.reader.reader import Reader
 from pursue_runtime.reader.store import Store
 from pursue_runtime.state import LIVE, SystemState
-from pursue_runtime.trusted_keys import KeyFolder
 from tests.runtime.reader_stage import DESK, OWN, POSES, STRATEGY
 
 PACKAGES = {"base": ("observer",), "bot1": ("controller_bot1",), "bot2": ("controller_bot2",)}

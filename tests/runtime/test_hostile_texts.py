@@ -42,8 +42,8 @@ from pursue_runtime.observer.planner import _read as read_answer
 from pursue_runtime.reader.contents import StoreError, manifest, read_state
 from pursue_runtime.reader.reader import check_data
 from pursue_runtime.strategy import Strategy, parse_plan, read_cover
+from pursue_runtime.ui.environment import TraceError, read_trace
 from pursue_runtime.ui.requests import read_request
-from pursue_runtime.ui.trace import TraceError, read_trace
 from pursue_runtime.zones import parse_zone
 from tests.partition.games import game
 from tests.runtime.reader_stage import Robot, mission

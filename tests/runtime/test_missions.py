@@ -19,7 +19,7 @@ from pursue_runtime.folders import ros_home
 from pursue_runtime.manifest import make_manifest, mission_file, mission_id
 from pursue_runtime.missions import Missions, own_source
 from pursue_runtime.state import SystemState, format_state, older, parse_state
-from pursue_runtime.state_filter import StateFilter
+from pursue_runtime.state_checks import StateFilter
 
 DATA = {"bot": b"format: 1\nwhat: bot of %s\n", "observer": b"format: 1\nwhat: observer of %s\n"}
 

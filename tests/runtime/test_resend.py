@@ -6,9 +6,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_runtime.controller.reports import RepeatedReport
 from pursue_runtime.event_words import Word, parse_word
-from pursue_runtime.resend import LAST_TIMEOUT, REPEATS, SHORTEST, StateRepeats, resend_interval, resend_timeout
+from pursue_runtime.resend import (
+    LAST_TIMEOUT,
+    REPEATS,
+    SHORTEST,
+    RepeatedReport,
+    StateRepeats,
+    resend_interval,
+    resend_timeout,
+)
 from pursue_runtime.state import HOLDING, SystemState
 
 

@@ -16,10 +16,11 @@ from pursue_gen.solving.inputs import game_of
 from pursue_gen.solving.request import SolveRequest, solution_of
 from pursue_gen.tools.transport.bundles import make_mission, sign
 from pursue_gen.tools.transport.client import Robot
-from pursue_gen.tools.transport.send_checks import fits, kept_by_all, previous
+from pursue_gen.tools.transport.send_report import fits, kept_by_all, previous
 from pursue_gen.tools.transport.sender import Sent, look, send, wait
 from pursue_runtime import bundle as mission_bundle
-from pursue_runtime.manager.background import Background, bind
+from pursue_runtime.bundle import KeyFolder
+from pursue_runtime.http_server import Background, bind
 from pursue_runtime.manager.manager import Manager, RequestLog
 from pursue_runtime.manager.server import Limits, Server
 from pursue_runtime.manifest import OWN
@@ -28,7 +29,6 @@ from pursue_runtime.reader.contents import StoreError
 from pursue_runtime.reader.reader import Reader
 from pursue_runtime.reader.store import Store
 from pursue_runtime.state import SystemState
-from pursue_runtime.trusted_keys import KeyFolder
 from tests.runtime.reader_stage import DESK
 from tests.waiting import PATIENCE
 

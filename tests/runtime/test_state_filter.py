@@ -7,7 +7,7 @@ from typing import Any, List, Tuple
 import pytest
 
 from pursue_runtime.state import SystemState, rewinds
-from pursue_runtime.state_filter import OLD, OTHER, OURS, REFUSED, StateFilter
+from pursue_runtime.state_checks import OLD, OTHER, OURS, REFUSED, StateFilter
 
 OWN = "a" * 12
 

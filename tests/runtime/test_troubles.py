@@ -4,11 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from pursue_runtime.model import Model
-from pursue_runtime.troubles import Troubles, trouble_values
-from pursue_runtime.ui.page import BAD, FloorPlan, Page
-from pursue_runtime.ui.page_server import PageServer
-from tests.runtime.ui.test_mission_view import DATA
+from pursue_runtime.sentences import Troubles, trouble_values
 
 SENT = "on its way to {b}: sent elsewhere by another node; its goal is sent again"
 
@@ -37,13 +33,3 @@ def test_controllers_do_not_mix() -> None:
 
 def test_what_is_the_reason_of_the_state_is_not_said_twice() -> None:
     assert Troubles().take("controller", values(bot="is 3.0 m from {a}"), "{bot} is 3.0 m from {a}, where …") == []
-
-
-def test_the_page_notes_it() -> None:
-    page = Page(Model({**DATA, "labels": {"bot": "Porter 1", "another": "no node"}}), FloorPlan({}, ()))
-    server = PageServer(page, None)  # type: ignore[arg-type]
-    server.show = lambda: None  # type: ignore[method-assign]
-    server.on_trouble(3.25, f"{{bot}} {SENT}")
-    (entry,) = page.log
-    assert (entry["at"], entry["kind"]) == (3.25, BAD)
-    assert entry["text"] == "Porter 1 on its way to b: sent elsewhere by another node; its goal is sent again"

@@ -22,8 +22,7 @@ from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import Solution, solve_scenario
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.tga.network import Network
-from pursue_gen.tools.simulation.make import make_case
-from pursue_gen.tools.simulation.runs import simulate
+from pursue_gen.tools.simulation.runs import make_case, simulate
 from tests.cli.test_commands import pursue
 
 DESK = """

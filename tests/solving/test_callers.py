@@ -26,10 +26,9 @@ from pursue_gen.solving.solution import Solution, guaranteed, solution
 from pursue_gen.solving.without_pauses import won_without_pauses
 from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tools.simulation.make import make_case
 from pursue_gen.tools.simulation.mission import simulate_mission
 from pursue_gen.tools.simulation.outcome import GOAL, Settings
-from pursue_gen.tools.simulation.runs import MissionRunner
+from pursue_gen.tools.simulation.runs import MissionRunner, make_case
 
 HOTEL = """
 poi "desk"

@@ -29,10 +29,9 @@ from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.strategy import with_automata_of
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tools.simulation.make import make_case
 from pursue_gen.tools.simulation.mission import SimulatedMission
 from pursue_gen.tools.simulation.outcome import SAFE
-from pursue_gen.tools.simulation.runs import MissionRunner
+from pursue_gen.tools.simulation.runs import MissionRunner, make_case
 from pursue_runtime.state import SystemState
 from tests.patrols import game_of
 

@@ -21,10 +21,9 @@ from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
-from pursue_gen.tools.simulation.make import make_case
 from pursue_gen.tools.simulation.mission import simulate_mission
 from pursue_gen.tools.simulation.outcome import GOAL, SAFE, Settings
-from pursue_gen.tools.simulation.runs import MissionRunner
+from pursue_gen.tools.simulation.runs import MissionRunner, make_case
 from tests.oracle.checker import in_python
 from tests.proof.staged_games import damaged
 from tests.proof.test_stages import of_the_whole

@@ -26,10 +26,9 @@ from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.uppaal import read_network, write_network
 from pursue_gen.tools.replay.game import Source, game_of
 from pursue_gen.tools.report.strategy_data import size, strategy_data_of
-from pursue_gen.tools.simulation.make import make_case
 from pursue_gen.tools.simulation.mission import simulate_mission
 from pursue_gen.tools.simulation.outcome import Settings
-from pursue_gen.tools.simulation.runs import MissionRunner
+from pursue_gen.tools.simulation.runs import MissionRunner, make_case
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import read_cover
 

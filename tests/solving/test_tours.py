@@ -25,10 +25,9 @@ from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy, with_automata_of
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tools.simulation.make import make_case
 from pursue_gen.tools.simulation.mission import simulate_mission
 from pursue_gen.tools.simulation.outcome import SAFE, Settings
-from pursue_gen.tools.simulation.runs import MissionRunner
+from pursue_gen.tools.simulation.runs import MissionRunner, make_case
 from tests.patrols import corridor, game_of, small_patrols, tours_of
 
 LATE = Rules().reaction

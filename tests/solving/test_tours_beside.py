@@ -13,10 +13,9 @@ from pursue_gen.solving.solvers import solved
 from pursue_gen.solving.tours_beside import won_beside_tours
 from pursue_gen.synthesis.strategy import with_automata_of
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tools.simulation.make import make_case
 from pursue_gen.tools.simulation.mission import simulate_mission
 from pursue_gen.tools.simulation.outcome import SAFE, Settings
-from pursue_gen.tools.simulation.runs import MissionRunner
+from pursue_gen.tools.simulation.runs import MissionRunner, make_case
 from tests.patrols import corridor, game_of
 
 LATE = Rules().reaction

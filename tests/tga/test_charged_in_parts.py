@@ -19,7 +19,7 @@ from pursue_gen.synthesis.limits import Limits
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Edge
 from pursue_gen.tga.uppaal import read_network, write_network
-from pursue_gen.tools.simulation.charges import Charges
+from pursue_gen.tools.simulation.duties import Charges
 from pursue_gen.tools.simulation.outcome import SAFE, Settings
 from pursue_gen.tools.simulation.runs import MissionRunner, case_of
 from pursue_gen.vocabulary.statuses import statuses

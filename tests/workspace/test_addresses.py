@@ -46,4 +46,4 @@ def test_nodes_do_so_too_where_nobody_has_given_an_address() -> None:
     assert found == {"communication_manager.py": "LOOPBACK", "options.py": "LOOPBACK"}
     assert arguments.LOOPBACK == LOOPBACK
     listening = {path.rsplit("/", 1)[-1] for path, text in files().items() if OPENS.search(text)}
-    assert listening == {"communication_manager.py", "background.py", "web.py"}, listening
+    assert listening == {"communication_manager.py", "http_server.py", "web.py"}, listening

@@ -48,9 +48,9 @@ def replay(
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.tools.calibration.proposal import of_mission
     from pursue_gen.tools.replay import check, game_of, read_recording
+    from pursue_gen.tools.replay.game import source_of
     from pursue_gen.tools.replay.journal import Journal, reconstruct
     from pursue_gen.tools.replay.moves import Moves
-    from pursue_gen.tools.replay.source import source_of
     from pursue_gen.tools.replay.written import with_orders, with_what_was_written
     from pursue_gen.tools.report.animation import check_name
 

@@ -56,7 +56,7 @@ def send(
     from pursue_gen.tools.transport.bundles import is_bundle, sign
     from pursue_gen.tools.transport.keys import load_private
     from pursue_gen.tools.transport.robots_file import chosen, read_robots
-    from pursue_gen.tools.transport.send_outcome import after_waiting, success
+    from pursue_gen.tools.transport.send_report import after_waiting, success
     from pursue_gen.tools.transport.sender import wait as wait_for
 
     is_default = request.is_default and places == Poses()
@@ -122,7 +122,7 @@ def _send(
 ) -> Sent:
     """Sends a mission's bundle to the robots, with a line of progress for each."""
     from pursue_gen.tools.commands.uploads import upload_lines
-    from pursue_gen.tools.transport.send_checks import fits
+    from pursue_gen.tools.transport.send_report import fits
     from pursue_gen.tools.transport.sender import send as send_to
 
     packages = {path.split("/")[0] for path in manifest.files}
@@ -133,9 +133,7 @@ def _send(
 
 def _send_back(mission: Optional[str], robots: Sequence[Robot], private: Ed25519PrivateKey, as_json_: bool) -> Sent:
     """Orders the robots back to an earlier mission; where one is out of reach, prints the table and raises."""
-    from pursue_gen.tools.transport.send_checks import kept_by_all, mission_digest, previous
-    from pursue_gen.tools.transport.send_outcome import all_reached
-    from pursue_gen.tools.transport.send_table import with_activity
+    from pursue_gen.tools.transport.send_report import all_reached, kept_by_all, mission_digest, previous, with_activity
     from pursue_gen.tools.transport.sender import look
     from pursue_gen.tools.transport.sender import send as send_to
 
@@ -149,8 +147,7 @@ def _send_back(mission: Optional[str], robots: Sequence[Robot], private: Ed25519
 
 def _show_status(robots: Sequence[Robot], as_json_: bool) -> None:
     """Prints what each robot plays, as a table."""
-    from pursue_gen.tools.transport.send_outcome import check_alike
-    from pursue_gen.tools.transport.send_table import with_activity
+    from pursue_gen.tools.transport.send_report import check_alike, with_activity
     from pursue_gen.tools.transport.sender import look
 
     rows = with_activity(look(robots))
@@ -159,7 +156,7 @@ def _show_status(robots: Sequence[Robot], as_json_: bool) -> None:
 
 
 def _show(rows: Sequence[Row], as_json_: bool, looked: bool = False, **facts: object) -> None:
-    from pursue_gen.tools.transport.send_table import as_json, table
+    from pursue_gen.tools.transport.send_report import as_json, table
 
     if as_json_:
         print(json.dumps(as_json(rows, **facts), indent=1))

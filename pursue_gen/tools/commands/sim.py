@@ -61,7 +61,7 @@ def sim(
     from pursue_gen.cli.solution import naming_costs
     from pursue_gen.tools.commands.mission_count import counting
     from pursue_gen.tools.simulation.faults import FAULTS, read_faults
-    from pursue_gen.tools.simulation.make import check_until
+    from pursue_gen.tools.simulation.runs import check_until
 
     if faults == "help":
         print("\n".join(f"{name:10}  {what}" for name, what in FAULTS.items()))

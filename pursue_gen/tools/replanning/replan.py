@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from math import ceil
-from typing import AbstractSet, Any, Dict, Mapping, Optional, Sequence
+from typing import AbstractSet, Any, Callable, Dict, Iterator, Mapping, Optional, Sequence
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.document import statement_text
+from pursue_gen.language.network_names import AT_RISK
 from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.language.written_orders import NoOrder
 from pursue_gen.outcomes import LimitHit, NotProven
@@ -20,11 +22,13 @@ from pursue_gen.partition.strategy_data import cover_data, strategy_data
 from pursue_gen.proof.checker import LIMIT
 from pursue_gen.proof.worst_case import counting_clock, worst_case
 from pursue_gen.solving.due_moves import patrols
-from pursue_gen.solving.efforts import EFFORTS
+from pursue_gen.solving.efforts import EFFORTS, Effort
+from pursue_gen.solving.group_games import Group
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import played
-from pursue_gen.solving.shares import Known, can_be_shared, won_in_shares
+from pursue_gen.solving.shares import Known, SharesSearch, can_be_shared, won_in_shares
+from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.solving.tours import PATROL
 from pursue_gen.solving.tours_again import is_too_much
 from pursue_gen.solving.without_pauses import verdict_of, won_without_pauses
@@ -36,8 +40,6 @@ from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.objectives import clock_of, stated
 from pursue_gen.tga.pauses import pauses
-from pursue_gen.tools.replanning.as_before import shared_as_before
-from pursue_gen.tools.replanning.ordered import longer
 from pursue_gen.tools.replanning.out_of_service import drawn_in, kept_no_more
 from pursue_gen.tools.replanning.request import Request, read_request
 from pursue_gen.tools.replanning.start import around, network_from, passed_bounds, start_clocks
@@ -293,3 +295,65 @@ def _objectives(scenario: Scenario, some: Optional[Sequence[StatedObjective]] = 
     """What is to be met, or these of it, in the author's words."""
     spans = dict.fromkeys(part.span for part in some or (*scenario.reach, *scenario.safety))
     return " and ".join(f"'{quoted(statement_text(scenario.text, span))}'" for span in spans)
+
+
+_SHARES_WORK, _SHARES_GAME = 10_000_000, 4_000_000
+"""The work of promises shared out as before at most, and of each of their games. Measured on an order in a ward with
+two robots."""
+
+
+def shared_as_before(
+    network: Network, objective: Objective, request: Request, options: SolveOptions, known: Known
+) -> Optional[Strategy]:
+    """A proven strategy in such shares that little work finds; None where it finds none. `known`: what that found."""
+    groups = tuple(_groups(network, objective, request))
+    if not groups:
+        return None
+    effort = Effort(_SHARES_WORK, game=_SHARES_GAME, guess=_SHARES_GAME // 4, joins=False)
+    with suppress(LimitHit):
+        return SharesSearch(network, objective, request.rules.reaction, options, effort, known).found(groups)
+    return None
+
+
+def _groups(network: Network, objective: Objective, request: Request) -> Iterator[Group]:
+    """Those of the shares, without what nobody has seen to so far and is asked for now."""
+    robots = commanded_agents(network)
+    asked = {automaton.name for automaton in network.automata if automaton.initial == AT_RISK}
+    ordered = {name for name in asked if clock_of(name) in request.sooner}
+    for sent, keeps in request.shares:
+        team = sent.intersection(robots)
+        mine = keeps - (ordered if team else asked)
+        bad = tuple(place for place in objective.bad if place[0] in mine)
+        if bad:
+            yield Group(team, bad)
+
+
+_HALVINGS = 6
+"""How often the time is halved in which an order could be promised: each step is a search. Not measured."""
+
+
+def longer(request: Request, is_won: Callable[[Request], bool]) -> Optional[float]:
+    """How many time units later than it is wanted an order could be promised, rounded up to tenths; None: not at all,
+    as far as it is known. A search for a request with that order is asked, at most 7 times."""
+    most = max(request.sooner.values())
+    if not is_won(_later(request, most)):
+        return None
+    least = Fraction(0)
+    for _ in range(_HALVINGS):
+        if most - least <= max(Fraction(1), most / 50):
+            break
+        middle = (least + most) / 2
+        if is_won(_later(request, middle)):
+            most = middle
+        else:
+            least = middle
+    return float(-(-most * 10 // 1) / 10)
+
+
+def _later(request: Request, by: Fraction) -> Request:
+    """The request with an order that may be answered later, but no later than the scenario promises."""
+    clocks = dict(request.clocks)
+    for name, ahead in request.sooner.items():
+        if name in clocks:
+            clocks[name] = max(Fraction(0), clocks[name] - min(ahead, by))
+    return replace(request, clocks=clocks)

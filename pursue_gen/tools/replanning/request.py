@@ -8,9 +8,8 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any, Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import PursueError, Severity, error
-from pursue_gen.language.checks import check_reading
-from pursue_gen.language.parser import read, without_errors
+from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.language.checks import checked
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.written_orders import NoOrder, WrittenOrder, with_written
 from pursue_gen.solving.rules import CONTROLLABLE, REPORTED, Rules
@@ -112,15 +111,10 @@ def wrong(message: str, expected: str) -> PursueError:
 
 @lru_cache(maxsize=4)  # simulated missions look for many plans of one scenario
 def _scenario(name: str, text: str) -> Scenario:
-    reading = read(text, f"{name}.pur", name)
-    findings = check_reading(reading)
-    if any(finding.severity is Severity.ERROR for finding in findings) or reading.scenario is None:
-        try:
-            without_errors(reading.scenario, findings)
-        except PursueError as problem:
-            raise PursueError(problem.diagnostics) from None
-    assert reading.scenario is not None
-    return reading.scenario
+    try:
+        return checked(text, f"{name}.pur", name)
+    except PursueError as problem:  # its exit status is that of a scenario
+        raise PursueError(problem.diagnostics) from None
 
 
 def _numbers(data: object, scenario: Scenario) -> FrozenSet[int]:

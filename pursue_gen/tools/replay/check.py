@@ -9,21 +9,16 @@ from pursue_gen.language import network_names as names
 from pursue_gen.language.symbols import Role, Symbol, role_of
 from pursue_gen.language.times import unit_name
 from pursue_gen.synthesis.lookup import Entry
-from pursue_gen.tools.replay.assumptions import newly_broken
-from pursue_gen.tools.replay.beginnings import EXACT
-from pursue_gen.tools.replay.broken import Broken
-from pursue_gen.tools.replay.commands import CommandCheck
+from pursue_gen.tools.replay.commands import CommandCheck, changed_service, commands_out_of_service
 from pursue_gen.tools.replay.ends import wrong_end
 from pursue_gen.tools.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Finding
 from pursue_gen.tools.replay.game import Game
-from pursue_gen.tools.replay.gaps import completed
-from pursue_gen.tools.replay.lateness import longest_due
-from pursue_gen.tools.replay.moves import Move, after, place_of
+from pursue_gen.tools.replay.gaps import EXACT, completed
+from pursue_gen.tools.replay.moves import Broken, Move, after, newly_broken, place_of
 from pursue_gen.tools.replay.orders import Orders, in_time, of_plan, since_for
 from pursue_gen.tools.replay.record import MissionRecord
 from pursue_gen.tools.replay.robots import Done, check_robots
-from pursue_gen.tools.replay.service import changed_service, commands_out_of_service
-from pursue_gen.tools.replay.steps import ReplayedStep, aged, change, delays, where
+from pursue_gen.tools.replay.steps import ReplayedStep, aged, change, delays, longest_due, where
 from pursue_gen.tools.replay.word_matches import match_words, unmatched_words
 from pursue_gen.tools.replay.written import with_what_was_written
 from pursue_runtime.event_words import CANCELLED

@@ -1,9 +1,10 @@
-"""Whether commands were the strategy's, given by those who may, and while the mission ran."""
+"""Whether commands were the strategy's, given by those who may, while the mission ran, and to no robot out of service.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import List, Mapping, Sequence
+from typing import Any, Iterator, List, Mapping, Sequence
 
 from pursue_gen.language.network_names import ORDER_DESK
 from pursue_gen.tools.replay.finding import FAULT, NOTE, UNRECORDED, Finding
@@ -11,8 +12,9 @@ from pursue_gen.tools.replay.game import Game
 from pursue_gen.tools.replay.orders import Orders, in_time
 from pursue_gen.tools.replay.record import MissionRecord
 from pursue_gen.tools.replay.steps import ReplayedStep, aged, zones_of
+from pursue_runtime.event_words import JOINS, LEAVES
 from pursue_runtime.locations import is_end, is_movement
-from pursue_runtime.state import HOLDING
+from pursue_runtime.state import HOLDING, SystemState
 
 
 @dataclass(frozen=True)
@@ -78,3 +80,33 @@ class CommandCheck:
         if not (self.record.is_late and step.since.seq == first.seq):  # else it may have been decided before
             back = min(back, (state.stamp - step.since.stamp) / state.unit)
         return in_time(zones_of(orders, step), aged(before, state), back, self.early)
+
+
+def changed_service(
+    before: SystemState, state: SystemState, plans: Mapping[int, Mapping[str, Any]]
+) -> Iterator[Finding]:
+    """What is to say of the robots that one state has out of service and the other has not."""
+    was, now = set(before.out_of_service), set(state.out_of_service)
+    plan, is_new = plans.get(state.plan, {}), state.plan != before.plan
+    if is_new and not was & now <= set(plan.get("out_of_service", ())):
+        text = f"plan {state.plan} is not proven to do without {' and '.join(sorted(was & now))}, out of service"
+        yield Finding(FAULT, "service", state.seq, text)
+    for robot in sorted(now - was):
+        yield Finding(NOTE, "service", state.seq, f"{robot} is out of service: nothing is sent to it")
+        proven = is_new and plan.get("order") == LEAVES and robot in plan.get("out_of_service", ())
+        if not proven or (state.event, state.agent) != (LEAVES, robot):
+            text = f"{robot} was taken out of service without a plan that is proven to do without it"
+            yield Finding(FAULT, "service", state.seq, text)
+    for robot in sorted(was - now):
+        yield Finding(NOTE, "service", state.seq, f"{robot} is in service again")
+        if (state.event, state.agent) != (JOINS, robot):
+            yield Finding(FAULT, "service", state.seq, f"{robot} is in service again, and nobody brought it back")
+
+
+def commands_out_of_service(steps: Sequence[ReplayedStep]) -> Iterator[Finding]:
+    """The commands that had a robot out of service begin something."""
+    for step in steps:
+        for name, edge in step.move if step.is_command else ():
+            if name in step.before.out_of_service and not edge.is_end:
+                text = f"{step.state.event} was commanded, and {name}, which takes part in it, is out of service"
+                yield Finding(FAULT, "service", step.state.seq, text)

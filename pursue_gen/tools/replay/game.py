@@ -1,4 +1,5 @@
-"""The game that a recorded mission is checked against: the scenario, its rules, and the strategy that was played."""
+"""The game that a recorded mission is checked against: the scenario, its rules, and the strategy that was played; from
+the recording itself, or from what a person names on the command line."""
 
 from __future__ import annotations
 
@@ -6,18 +7,20 @@ import hashlib
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Mapping, Optional, Tuple
+from typing import Any, Mapping, Optional, Tuple, Union
 
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import PursueError, error, usage_error
 from pursue_gen.files import LARGEST_TEXT, read_text
-from pursue_gen.language import parse
+from pursue_gen.language import load, parse
 from pursue_gen.language.network_names import LOSE
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.partition import partition
 from pursue_gen.solving.inputs import game_of as ideal_game
+from pursue_gen.solving.inputs import settled
 from pursue_gen.solving.optional import promised
 from pursue_gen.solving.options import DEFAULT, SolveOptions
+from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
@@ -25,8 +28,10 @@ from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.synthesis.strategy import Strategy, with_automata_of
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Edge, Network, Objective
+from pursue_gen.tools.replay.journal import Journal
 from pursue_gen.tools.replay.moves import Moves
 from pursue_gen.tools.replay.orders import Orders, of_strategy
+from pursue_gen.tools.replay.record import MissionRecord
 from pursue_runtime.bounded import BadText, read_yaml
 from pursue_runtime.numbers import exact, whole
 
@@ -169,3 +174,27 @@ def game_of(source: Source, limits: Limits = NO_LIMITS, progress: Optional[Liste
     subs = partition(strategy, network, scenario.agents, source.controllers, source.reach_obj)
     orders = of_strategy(strategy, ((sub.controller, sub.agents) for sub in subs), source.rules.reaction)
     return Game(scenario, network, objective, orders, given=source.plan is not None or bool(source.digest))
+
+
+def source_of(
+    found: Union[MissionRecord, Journal],
+    file: Path,
+    scenario: Optional[Path],
+    workspace: Optional[Path],
+    request: SolveRequest,
+) -> Source:
+    """The source for what was `found` in the recording `file`: a workspace, a scenario, or else the recording.
+
+    Raises PursueError (exit status 2) where there is none, and for a scenario with errors.
+    """
+    if workspace is not None:
+        if scenario is not None or not request.is_default:
+            hint = "leave out SCENARIO, --ends, --reaction and --slack"
+            raise usage_error("a workspace says which game it plays", hint)
+        return from_workspace(workspace)
+    if scenario is not None:
+        read = settled(load(str(scenario)), request)
+        return Source(scenario.stem, read.text, str(scenario), request.rules(translate(read)))
+    if not isinstance(found, Journal) and found.game is not None:
+        return from_data(found.game, str(file))
+    raise usage_error(f"{file} does not hold its scenario", f"pursue-gen replay {file} SCENARIO.pur")

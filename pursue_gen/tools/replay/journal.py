@@ -10,8 +10,7 @@ from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Tup
 
 from pursue_gen.language.network_names import DESK_OPEN, ORDER_DESK
 from pursue_gen.tga.network import Objective
-from pursue_gen.tools.replay.assumptions import breach, overstayed, without
-from pursue_gen.tools.replay.moves import EXACT, DiscreteState, Move, Moves, after
+from pursue_gen.tools.replay.moves import EXACT, DiscreteState, Move, Moves, after, breach, overstayed, without
 from pursue_gen.tools.replay.record import MissionRecord, RecordedWord, read_word
 from pursue_runtime.bounded import json_object
 from pursue_runtime.event_words import CANCELLED, FAILED, FINISH, ORDERED, PLANNED, START, STOP

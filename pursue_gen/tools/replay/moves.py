@@ -1,14 +1,16 @@
-"""Which joint moves of a network a word can mean, where they lead, and how far clocks are from allowing them."""
+"""Which joint moves of a network a word can mean, where they lead, how far clocks are from allowing them, and what of
+assumptions and objectives is broken."""
 
 from __future__ import annotations
 
 import itertools
+from itertools import chain
 from typing import Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_gen.language.network_names import assumption_clock
 from pursue_gen.language.symbols import Role, Symbol, role_of
 from pursue_gen.tga.event_words import event_word
-from pursue_gen.tga.network import ClockBound, Edge, Network, Objective
+from pursue_gen.tga.network import ClockBound, Edge, Network, Objective, Test
 from pursue_runtime.state import SystemState
 
 EXACT = 1e-6
@@ -227,3 +229,61 @@ def after(move: Move, place: DiscreteState) -> Tuple[DiscreteState, Tuple[str, .
         values.update(edge.assign)
         resets.update(dict.fromkeys(edge.resets))
     return DiscreteState(locations, values), tuple(resets)
+
+
+Found = Tuple[DiscreteState, List[Move]]
+"""The place with the variables of broken assumptions at 0, and the moves that are possible there."""
+
+
+def newly_broken(before: Mapping[str, int], now: Mapping[str, int]) -> Tuple[str, ...]:
+    """The variables of the assumptions that hold among the values before, and not among those now."""
+    return tuple(name for name in _holding(before) if now.get(name) == 0)
+
+
+def _holding(values: Mapping[str, int]) -> List[str]:
+    return [name for name, value in values.items() if value and role_of(name) is Role.ASSUMPTION]
+
+
+def without(place: DiscreteState, broken: Sequence[str]) -> DiscreteState:
+    """The place with these variables at 0."""
+    return place._replace(values={**place.values, **dict.fromkeys(broken, 0)})
+
+
+def breach(moves: Moves, place: DiscreteState, word: str, agent: str) -> Found:
+    """What a word does that only assumptions exclude; no moves where something else excludes it.
+
+    One assumption is broken where that suffices, else all that hold, as the observer has it.
+    """
+    standing = _holding(place.values)
+    for some in chain(([name] for name in standing), [standing] if len(standing) > 1 else []):
+        found = list(moves.of(without(place, some), word, agent))
+        if found:
+            return without(place, some), found
+    return place, []
+
+
+def overstayed(moves: Moves, place: DiscreteState, clocks: Mapping[str, float]) -> Tuple[str, ...]:
+    """The variables of the assumptions by which somebody should have left by now."""
+    over = {clock for clock, late in moves.exceeded(place, clocks).items() if late >= 0}
+    return tuple(name for name in _holding(place.values) if moves.assumed[name] in over)
+
+
+class Broken:
+    """The edges by which objectives become broken without anybody's doing, by the first test of each."""
+
+    def __init__(self, network: Network, objective: Objective) -> None:
+        self._edges: Dict[Test, List[Tuple[str, Edge]]] = {}
+        bad = set(objective.bad)
+        for name, edge in network.edges:
+            clauses = edge.guard.integers
+            if (name, edge.target) in bad and edge.sync is None and clauses and not edge.guard.clocks:
+                for test in clauses[0]:
+                    self._edges.setdefault(test, []).append((name, edge))
+
+    def of(self, locations: Mapping[str, str], values: Mapping[str, int]) -> str:
+        """The automaton of an objective that is broken in a state; "" where none is, or it is marked already."""
+        for item in values.items():
+            for name, edge in self._edges.get(Test(*item), ()):
+                if locations.get(name) == edge.source and edge.guard.holds(values):
+                    return name
+        return ""

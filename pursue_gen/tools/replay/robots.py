@@ -1,10 +1,11 @@
-"""The orders to robots, against what they do according to the states."""
+"""The orders to robots, against what they do according to the states; and what the robots' side has acknowledged of
+what they were ordered to do at once, as it counts for the goal."""
 
 from __future__ import annotations
 
 import bisect
 import math
-from typing import AbstractSet, Dict, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import AbstractSet, Dict, Iterable, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.drawing.layout import poses
 from pursue_gen.language.network_names import going
@@ -13,11 +14,12 @@ from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
 from pursue_gen.tools.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Finding
 from pursue_gen.tools.replay.game import Game
 from pursue_gen.tools.replay.orders import Orders
-from pursue_gen.tools.replay.receipts import receipts_in, without_receipt
 from pursue_gen.tools.replay.record import MissionRecord, RobotOrder
 from pursue_gen.workspace.map_spots import SPARE_REACH
+from pursue_runtime.event_words import ORDERED
 from pursue_runtime.locations import breaks_off
-from pursue_runtime.state import ENDED, SystemState
+from pursue_runtime.orders import parse_orders
+from pursue_runtime.state import ENDED, WON, SystemState
 
 LATE = 2.0
 """Seconds by which an order may be received after its activity is over: messages take time, and robots may be quick."""
@@ -254,3 +256,42 @@ def _joins(record: MissionRecord, scenario: Scenario, order: RobotOrder) -> bool
 def _number_at(record: MissionRecord, at: float) -> int:
     earlier = [state.seq for state in record.states if state.stamp <= at]
     return earlier[-1] if earlier else record.states[0].seq
+
+
+Receipt = Tuple[str, int]
+"""A robot, and the number of the state that its order follows from."""
+
+
+def receipts_in(record: MissionRecord, controllers: AbstractSet[str]) -> Set[Receipt]:
+    """Return which orders were acknowledged, by other nodes than those that give them."""
+    return {
+        (word.agent, word.seq)
+        for word in record.words
+        if word.event == ORDERED and word.seq is not None and word.node not in controllers
+    }
+
+
+def without_receipt(
+    record: MissionRecord, at_once: Iterable[Tuple[str, SystemState]], receipts: AbstractSet[Receipt]
+) -> List[Finding]:
+    """Return a finding for each order of a won mission that was to be acknowledged, and was not.
+
+    `at_once`: robots, and the states that follow from what they were commanded to do at once. Actions without numbers,
+    which a robot gets where `orders` is not numbered, are acknowledged by nobody; neither are those of a recording
+    whose states have no orders, which is older.
+    """
+    orders = [(state, order) for state in record.states for order in parse_orders(state.orders)]
+    if not orders or not any(state.status == WON for state in record.states):
+        return []
+    plain = {(order.robot, order.action) for order in record.orders if order.action and order.seq is None}
+    wanted = {(robot, state.seq): (state, state.event) for robot, state in at_once}
+    for state, order in orders:
+        if order.at_once:
+            wanted.setdefault((order.agent, order.seq), (state, order.event))
+    found: List[Finding] = []
+    for (robot, seq), (state, event) in sorted(wanted.items(), key=lambda entry: entry[0]):
+        if (robot, seq) not in receipts and (robot, event) not in plain:
+            level = UNRECORDED if state.stamp <= record.whole_from else FAULT
+            text = f"the mission was won, but {robot}'s side has not acknowledged {event}"
+            found.append(Finding(level, "unacknowledged", seq, text))
+    return found

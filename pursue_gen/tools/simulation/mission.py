@@ -5,19 +5,16 @@ from __future__ import annotations
 import random
 from typing import Any, Dict, List, Optional, Tuple, Union
 
-from pursue_gen.tools.simulation.became_true import BecameTrue
 from pursue_gen.tools.simulation.connections import RECONNECTION, Connections
-from pursue_gen.tools.simulation.driven import Driven
 from pursue_gen.tools.simulation.event_queue import Action, EventQueue, Timer
-from pursue_gen.tools.simulation.faults import Crash, FaultPlan
-from pursue_gen.tools.simulation.junk import junk_word
+from pursue_gen.tools.simulation.faults import Crash, FaultPlan, junk_word
 from pursue_gen.tools.simulation.nodes import ControllerNode, ObserverNode, PeopleNode, to_process
 from pursue_gen.tools.simulation.opponents import Opponent, kind_in_mission
 from pursue_gen.tools.simulation.outcome import FAILED, GOAL, HELD, SAFE, Outcome, Settings, described
 from pursue_gen.tools.simulation.people_orders import PeopleOrders
 from pursue_gen.tools.simulation.planner import SimulatedPlanner
 from pursue_gen.tools.simulation.promises import Promises
-from pursue_gen.tools.simulation.recorder import EPSILON, Judgement, Recorder
+from pursue_gen.tools.simulation.recorder import EPSILON, BecameTrue, Driven, Judgement, Recorder
 from pursue_gen.tools.simulation.remaining import Remaining
 from pursue_gen.tools.simulation.stage import Stage
 from pursue_gen.tools.simulation.world import SimulatedAgent

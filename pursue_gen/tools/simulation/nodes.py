@@ -9,12 +9,13 @@ from pursue_gen.tools.simulation.event_queue import Action, EventQueue, Timer
 from pursue_gen.tools.simulation.stage import Stage
 from pursue_runtime.controller.scheduler import CommandScheduler
 from pursue_runtime.event_words import Word, parse_word
-from pursue_runtime.observer.journal import Journal, Log, replay
+from pursue_runtime.observer.journal import Journal, replay
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planning import PlanRequest
 from pursue_runtime.observer.returning import Inbox, take_up
 from pursue_runtime.orders import Order
 from pursue_runtime.resend import StateRepeats
+from pursue_runtime.sentences import Log
 from pursue_runtime.state import LIVE, SystemState
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui import mission_view as ui

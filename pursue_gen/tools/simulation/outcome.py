@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Mapping, Optional, Tuple
 
-from pursue_gen.tools.simulation.open_requests import Duty
+from pursue_gen.tools.simulation.duties import Duty
 from pursue_runtime.sentences import in_words
 from pursue_runtime.state import SystemState
 

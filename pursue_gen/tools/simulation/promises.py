@@ -15,9 +15,8 @@ from pursue_gen.language.network_names import going, has_happened
 from pursue_gen.language.objectives.base import Breaks
 from pursue_gen.language.objectives.endurance import batteries_in
 from pursue_gen.language.scenario import Ref, Safety, Scenario
-from pursue_gen.tools.simulation.charges import Charges
+from pursue_gen.tools.simulation.duties import Charges, Duty, OpenRequests
 from pursue_gen.tools.simulation.meaning import holds
-from pursue_gen.tools.simulation.open_requests import Duty, OpenRequests
 from pursue_gen.tools.simulation.recorder import EPSILON
 from pursue_runtime.event_words import CANCELLED
 from pursue_runtime.locations import is_action, is_under_way, place_of

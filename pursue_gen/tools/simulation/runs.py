@@ -11,19 +11,29 @@ from multiprocessing.connection import Connection
 from statistics import median
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import error
+from pursue_gen.diagnostics import error, usage_error
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import Unfinished
 from pursue_gen.proof.margin import USUAL, strategy_margin
+from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.solution import Solution
+from pursue_gen.tools.simulation.duties import Duty
 from pursue_gen.tools.simulation.mission import simulate_mission
-from pursue_gen.tools.simulation.open_requests import Duty
 from pursue_gen.tools.simulation.outcome import FAILED, GOAL, HELD, SAFE, Outcome, Settings
 from pursue_gen.tools.simulation.promises import duties_of
 from pursue_gen.tools.simulation.remaining import Remaining
 from pursue_gen.tools.simulation.stage import Stage, stage_of
 from pursue_gen.workspace import Options
+from pursue_gen.workspace.make import options_for
 from pursue_runtime.state import LOST, STOPPED
+
+_LONG, _SHORT = 1000.0, 200.0
+"""The default time after which a mission is over, in time units: with a goal, and without one. Not measured."""
+
+_SPARE = 2
+"""With a goal it is at least so many times as long as the strategy takes at worst. Not measured."""
+
+_LONGEST = 1e6
 
 ENDS = (GOAL, SAFE, STOPPED, HELD, LOST, FAILED)
 """In the order of tables."""
@@ -109,6 +119,40 @@ def case_of(scenario: Scenario, won: Solution, options: Options, settings: Setti
         margin = float(strategy_margin(won.network, won.objective, won.strategy, won.reaction, USUAL).wins)
     known = replace(settings, bound=bound, span=span, margin=margin)
     return Case(scenario, won, options, known, remaining), remaining.works
+
+
+def check_until(until: Optional[float]) -> None:
+    """Raises PursueError (exit status 2) for what is no end of a mission, in time units."""
+    if until is not None and not 0 < until < _LONGEST:
+        raise usage_error(f"--until is {until:g}", "a number of time units greater than 0, such as 200")
+
+
+def usual_end(won: Solution) -> float:
+    """When a mission is over if nobody says so, in time units."""
+    if not won.objective.reaches:
+        return _SHORT
+    worst = None if won.guarantee is None else won.guarantee.worst
+    return max(_LONG, float(_SPARE * (worst or 0)))
+
+
+def make_case(
+    scenario: Scenario,
+    won: Solution,
+    request: SolveRequest,
+    opponent: str,
+    faults: Tuple[str, ...],
+    until: Optional[float],
+) -> Tuple[Case, bool]:
+    """The case to simulate, and whether its worst opponent knows how long plays can be.
+
+    `opponent` and `faults` as for `Settings`; `until`: when a mission is over, in time units; None for the default. It
+    does not know where the game is too large or the strategy has stages: then it does anything.
+    """
+    check_until(until)
+    goal = won.objective.reaches
+    settings = Settings(opponent, faults, until or usual_end(won))
+    case, knows = case_of(scenario, won, options_for(request, won), settings)
+    return case, knows or not goal or opponent not in ("worst", "mixed")
 
 
 class MissionRunner:

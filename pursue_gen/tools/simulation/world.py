@@ -12,11 +12,10 @@ from pursue_gen.tools.simulation.connections import drawn_share
 from pursue_gen.tools.simulation.event_queue import EventQueue, Timer
 from pursue_gen.tools.simulation.faults import Breakdown, FaultPlan
 from pursue_gen.tools.simulation.stage import Stage
-from pursue_runtime.controller.reports import RepeatedReport
 from pursue_runtime.event_words import FAILED, ORDERED, RobotReport, Word, format_word
 from pursue_runtime.locations import action_of, is_action, is_movement, is_under_way
 from pursue_runtime.orders import Order, parse_orders
-from pursue_runtime.resend import resend_timeout
+from pursue_runtime.resend import RepeatedReport, resend_timeout
 from pursue_runtime.simulator.simulator import EndWindow, Simulator, end_window, picked, report_of
 from pursue_runtime.state import SystemState
 

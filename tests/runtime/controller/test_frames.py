@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from pursue_runtime.controller.frames import NO_LEVELS, MapFrames
 from pursue_runtime.controller.settings import Settings, read_settings
-from pursue_runtime.controller.whereabouts import Position, Whereabouts, place_of
+from pursue_runtime.controller.whereabouts import NO_LEVELS, MapFrames, Position, Whereabouts, place_of
 from pursue_runtime.data import DataError
 from pursue_runtime.poses import read_poses
 

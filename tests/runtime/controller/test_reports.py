@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from pursue_runtime.controller.reports import RepeatedReport
 from pursue_runtime.event_words import FAILED, RobotReport, Word, parse_report, parse_word
+from pursue_runtime.resend import RepeatedReport
 
 
 def test_what_is_published_again_carries_the_time_of_the_first() -> None:

@@ -9,8 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_runtime.data import DataError
-from pursue_runtime.doors.asking import REPEAT, SETTLE
-from pursue_runtime.doors.keeper import DoorData, DoorKeeper, read_doors
+from pursue_runtime.doors.keeper import REPEAT, SETTLE, DoorData, DoorKeeper, Word, read_doors
 from pursue_runtime.state import RUNNING, WAITING, SystemState
 
 WAYS = ("going_hall_to_lab", "going_lab_to_hall")
@@ -28,7 +27,7 @@ class World:
         self.keeper = DoorKeeper(DOORS)
         self.now = 100.0
 
-    def see(self, *args: object, **more: object) -> List[Tuple[str, bool]]:
+    def see(self, *args: object, **more: object) -> List[Tuple[str, Word]]:
         self.keeper.on_state(state(*args, **more), self.now)  # type: ignore[arg-type]
         return self.keeper.due(self.now)
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_runtime.data import DataError
-from pursue_runtime.doors.asking import REPEAT, SETTLE
+from pursue_runtime.doors.keeper import REPEAT, SETTLE, Word
 from pursue_runtime.doors.lifts import NOWHERE, LiftData, LiftKeeper, read_lifts
 from pursue_runtime.state import RUNNING, WAITING, SystemState
 
@@ -29,11 +29,11 @@ class World:
         self.keeper = LiftKeeper(LIFTS)
         self.now = 100.0
 
-    def see(self, *args: object, **more: object) -> List[Tuple[str, str]]:
+    def see(self, *args: object, **more: object) -> List[Tuple[str, Word]]:
         self.keeper.on_state(state(*args, **more), self.now)  # type: ignore[arg-type]
         return self.asked()
 
-    def asked(self) -> List[Tuple[str, str]]:
+    def asked(self) -> List[Tuple[str, Word]]:
         return self.keeper.due(self.now)
 
     def open_at(self, floor: str, wait: float = 1.0) -> Dict[str, FrozenSet[str]]:
@@ -44,7 +44,7 @@ class World:
     def gates(self) -> Dict[str, FrozenSet[str]]:
         return dict(self.keeper.opened(self.now).doors)
 
-    def aboard(self, agent: str, as_of: Optional[int] = None) -> List[Tuple[str, str]]:
+    def aboard(self, agent: str, as_of: Optional[int] = None) -> List[Tuple[str, Word]]:
         self.now += 1.0
         self.keeper.on_aboard(agent, as_of, self.now)
         return self.asked()

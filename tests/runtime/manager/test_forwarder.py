@@ -8,7 +8,7 @@ from typing import Any, Callable, Dict, Iterator, List
 
 import pytest
 
-from pursue_runtime.manager.background import Background, bind
+from pursue_runtime.http_server import Background, bind
 from pursue_runtime.manager.forwarder import MAX_LINE, Forwarder
 from pursue_runtime.manager.manager import RequestLog
 from tests.waiting import PATIENCE, connected, until
@@ -89,7 +89,7 @@ def test_whoever_goes_leaves_room_and_there_is_no_more(stage: Callable[..., Stag
     here.connect()
     here.wait(2)
     assert here.connect().recv(10) == b""
-    assert here.record.counts() == {"turned away": 1}
+    assert here.record.counts == {"turned away": 1}
     first.close()
     here.wait(1)
     there = here.connect()
@@ -113,7 +113,7 @@ def test_who_does_not_read_is_given_up_and_others_hear_on(stage: Callable[..., S
                 if here.forwarder.subscribers == 1:
                     break
         assert here.forwarder.subscribers == 1
-        assert here.record.counts()["given up"] == 1
+        assert here.record.counts["given up"] == 1
 
 
 def test_what_subscribers_send_is_ignored_and_too_much_of_it_ends_the_connection(stage: Callable[..., Stage]) -> None:

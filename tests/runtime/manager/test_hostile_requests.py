@@ -22,11 +22,11 @@ from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Se
 import pytest
 
 from pursue_runtime import bundle as mission_bundle
+from pursue_runtime.bundle import KeyFolder
 from pursue_runtime.manifest import make_manifest
 from pursue_runtime.reader import reader as reader_core
 from pursue_runtime.reader.reader import Reader
 from pursue_runtime.reader.store import Store
-from pursue_runtime.trusted_keys import KeyFolder
 from tests.runtime.manager_stage import ROBOT, Desk, Robot, Sent, ask, head, send
 from tests.runtime.reader_stage import POSES, STRATEGY
 from tests.waiting import PATIENCE, connected, may_close, rest, until
@@ -361,11 +361,11 @@ def test_thousands_of_hostile_requests_leave_nothing_and_a_serving_robot(tmp_pat
         for action in ("prepare", "commit"):
             obeyed(robot, desk, action, second)
         assert json.loads((place / "state.json").read_bytes())["current"] == second.digest
-        assert "errors" not in robot.record.counts(), robot.lines
+        assert "errors" not in robot.record.counts, robot.lines
         assert len(robot.lines) <= 2 + (time.monotonic() - begun) / 10, "strangers do not fill the log"
         print(f"\n{REQUESTS} requests and {opened} drips: {growth / 2**20:.1f} MiB more, log lines {len(robot.lines)}")
         print("\n".join(f"{kind}: {counts[kind]}" for kind in sorted(counts)))
-        print(robot.record.counts())
+        print(robot.record.counts)
     finally:
         robot.close()
         robot.reader.store.close()

@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_runtime import bundle as mission_bundle
+from pursue_runtime.bundle import KeyFolder
 from pursue_runtime.manager import manager as manager_core
 from pursue_runtime.manager.manager import (
     HTTP,
@@ -23,7 +24,6 @@ from pursue_runtime.manager.manager import (
     parse_length,
     topic_names,
 )
-from pursue_runtime.trusted_keys import KeyFolder
 from tests.runtime.manager_stage import ROBOT, Desk
 
 TICKET = "0" * 31 + "1"
@@ -216,9 +216,9 @@ def test_the_log_gets_a_line_now_and_then_and_the_counts_get_all() -> None:
     for _ in range(1000):
         record.count("401", "a stranger")
     record.count("200")
-    assert lines == ["a stranger"] and record.counts() == {"401": 1000, "200": 1}
+    assert lines == ["a stranger"] and record.counts == {"401": 1000, "200": 1}
     record.log("200", "a mission")
-    assert notes == ["a mission"] and record.counts()["200"] == 2, "strangers do not keep it out"
+    assert notes == ["a mission"] and record.counts["200"] == 2, "strangers do not keep it out"
     now[0] = 11.0
     record.count("404", "another")
     assert lines[1:] == ["another (and 999 more that were not logged)"]

@@ -18,7 +18,7 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import NameOID
 
 from pursue_runtime import bundle as mission_bundle
-from pursue_runtime.manager.background import ServerError, bind
+from pursue_runtime.http_server import ServerError, bind
 from pursue_runtime.manager.manager import LONGEST_HEADER
 from pursue_runtime.manager.server import Limits, tls
 from tests.runtime.manager_stage import ROBOT, Desk, Robot, ask, exchange, head, parse, send
@@ -196,7 +196,7 @@ def test_what_is_no_request_of_ours_does_no_harm(serve: Serve, lines: str, http:
     told = parse(exchange(robot.port, lines.encode("latin1")[:65536] + b"\r\n\r\n", b"\r\n" * 100))
     assert told.http in (http, 0) and told.facts.get("ok", False) is False
     assert ask(robot).http == 200
-    assert "errors" not in robot.record.counts(), robot.lines
+    assert "errors" not in robot.record.counts, robot.lines
 
 
 def test_a_right_order_in_chunks_needs_a_length(serve: Serve) -> None:
@@ -216,7 +216,7 @@ def test_chunks_are_not_even_counted(serve: Serve, method: str, path: str) -> No
         answer = parse(exchange(robot.port, head(path, method, Transfer_Encoding="chunked") + more))
         assert answer.http in (400, 404, 405, 411)
     assert ask(robot).http == 200
-    assert "errors" not in robot.record.counts(), robot.lines
+    assert "errors" not in robot.record.counts, robot.lines
 
 
 def test_one_request_a_connection_whatever_follows(serve: Serve) -> None:
@@ -225,7 +225,7 @@ def test_one_request_a_connection_whatever_follows(serve: Serve) -> None:
     answer = exchange(robot.port, head("/health", "GET") * 20 + order + b"\x00junk\r\n\r\n")
     assert answer.count(b"HTTP/1.1") == 1 and b"Connection: close" in answer
     assert ask(robot).http == 200
-    until(lambda: robot.record.counts().get("200") == 2, "two were answered")
+    until(lambda: robot.record.counts.get("200") == 2, "two were answered")
     assert robot.reader.messages == []
 
 
@@ -287,7 +287,7 @@ def test_a_flood_keeps_no_order_out(serve: Serve, address: str) -> None:
     with flooded(robot.port, address):
         assert ask(robot).http == 200
         assert send(robot, desk.order(robot.reader.ticket, "commit", "a" * 64)).http == 200
-        assert robot.record.counts()["turned away"] >= 100 - robot.server.limits.connections // 2
+        assert robot.record.counts["turned away"] >= 100 - robot.server.limits.connections // 2
 
 
 def test_an_upload_that_has_begun_is_not_ended_by_a_flood(serve: Serve) -> None:
@@ -325,7 +325,7 @@ def test_a_client_that_leaves_while_the_reader_works_harms_nobody(serve: Serve) 
     robot.reader.hear(json.dumps(robot.reader.messages[0]))
     until(lambda: not robot.server.busy, "and ends")
     assert send(robot, desk.order(robot.reader.ticket, "commit", "a" * 64)).http == 200
-    assert "errors" not in robot.record.counts(), robot.lines
+    assert "errors" not in robot.record.counts, robot.lines
 
 
 def test_an_internal_error_is_reported_without_details(serve: Serve) -> None:
@@ -375,7 +375,7 @@ def test_with_a_certificate_it_speaks_tls_only_and_no_old_one(serve: Serve, tmp_
     with pytest.raises(ssl.SSLError):
         exchange(robot.port, head("/health", "GET"), tls=old)
     assert send(robot, desk.order(robot.reader.ticket, "abort"), tls=client).http == 200
-    assert "errors" not in robot.record.counts(), robot.lines
+    assert "errors" not in robot.record.counts, robot.lines
 
 
 def test_a_certificate_that_cannot_be_used_is_reported_with_what_to_do(tmp_path: Path) -> None:

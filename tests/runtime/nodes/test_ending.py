@@ -123,19 +123,19 @@ print("status", ending.wait())
 
 def test_a_node_that_begins_anew_is_the_same_process_with_its_signals_as_they_were() -> None:
     program = """
-from pursue_runtime.nodes import node, process
-if process.ANEW in os.environ:
+from pursue_runtime.nodes import node
+if node.ANEW in os.environ:
     before = signal.getsignal(signal.SIGTERM)
-    process.lower_priority()
+    node.lower_priority()
     print("again", os.getpid(), os.nice(0), before == signal.SIG_DFL)
 else:
-    process.lower_priority()
+    node.lower_priority()
     ending = node.Ending()
     ending.renew()
     assert ending.wait(linger=1000) == 0 and ending.renewed
     print("first", os.getpid(), os.nice(0), flush=True)
     sys.argv = [sys.argv[1], *sys.argv[1:]]
-    process.restart_process()
+    node.restart_process()
 """
     with tempfile.TemporaryDirectory() as folder:
         file = os.path.join(folder, "node.py")

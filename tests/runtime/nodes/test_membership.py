@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, Dict, List
+from typing import Any, Callable, Dict, List
 
 import pytest
 
@@ -14,6 +14,7 @@ pytest.importorskip("rospy", reason="ROS is not installed")
 from pursue_runtime.data import Package
 from pursue_runtime.nodes import membership as module
 from pursue_runtime.nodes.membership import Membership
+from pursue_runtime.nodes.node import ERROR, OK, WARN, NodeReport
 from pursue_runtime.state import SystemState
 from tests.runtime.models import model_data, mover, worker
 
@@ -68,6 +69,25 @@ def test_a_state_that_is_not_of_its_model_is_refused_and_the_observer_learns_wha
     node = Node(tmp_path, monkeypatch)
     assert not node.membership.takes(node.state(locations={"bot": "nowhere"}))
     assert node.done == ["witness"] and node.membership.refused
+
+
+def test_a_node_is_not_ready_while_its_mission_is_not_the_one_of_the_observer(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    node = Node(tmp_path, monkeypatch)
+    reports: List[Callable[[], NodeReport]] = []
+    for name in ("subscribe_states", "pulses_of_all"):
+        monkeypatch.setattr(module, name, lambda *_, **__: None)
+    monkeypatch.setattr(module, "Diagnostics", lambda report, *_: reports.append(report))
+    node.membership.follow(lambda *_: None, lambda: NodeReport(True, OK, "running", {"reported": 3}))
+    mission = node.membership.source.mission
+    values = {"mission": mission, "reported": 3, "refused": "", "malformed": 0}
+    assert reports[0]() == (True, OK, "running", values)
+    node.membership.takes(node.state(mission="f" * 12))
+    assert reports[0]()[:3] == (False, WARN, "does not have mission ffffffffffff: send it to this machine")
+    node.membership.takes(node.state(locations={"bot": "nowhere"}))
+    found = reports[0]()
+    assert found[:2] == (False, ERROR) and found.message == f"refused {found.values['refused']}"
 
 
 def test_people_have_a_part_of_the_strategy_where_there_is_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

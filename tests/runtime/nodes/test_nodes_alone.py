@@ -18,15 +18,14 @@ import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from std_msgs.msg import String
 
-from pursue_runtime.controller.frames import MapFrames
 from pursue_runtime.controller.goal import Goal, Movement
 from pursue_runtime.controller.settings import Settings
-from pursue_runtime.controller.whereabouts import Position, place_of
+from pursue_runtime.controller.whereabouts import MapFrames, Position, place_of
 from pursue_runtime.nodes import mission_test, positions, recorder, robot_link
 from pursue_runtime.nodes.communication_manager import CommunicationManager
 from pursue_runtime.nodes.drive_legs import DriveLegs
 from pursue_runtime.nodes.markers import MarkersNode
-from pursue_runtime.nodes.node import ERROR, OK, WARN, master_is_gone
+from pursue_runtime.nodes.node import OK, WARN, master_is_gone
 from pursue_runtime.nodes.pursue_reader import Node as ReaderNode
 from pursue_runtime.nodes.recorder import Bag, Recorder
 from pursue_runtime.nodes.robot_link import RobotLink
@@ -34,8 +33,10 @@ from pursue_runtime.nodes.simulator import SimulatorNode
 from pursue_runtime.nodes.state_message import message_of
 from pursue_runtime.nodes.ui_page import UIPage
 from pursue_runtime.nodes.witness import Witnesses
+from pursue_runtime.sentences import Troubles, trouble_values
 from pursue_runtime.state import SystemState
 from pursue_runtime.ui.markers import BALL, DISC, TEXT
+from pursue_runtime.ui.page import BAD
 
 STATE = SystemState(7, 100.0, {"bot": "a"}, {"Pbot": 1}, {"Cbot": 1.0}, status="running")
 
@@ -153,7 +154,6 @@ def markers() -> Any:
     for name, number in kinds.items():
         setattr(Marker, name, number)
     made.messages = SimpleNamespace(Marker=Marker)
-    made.membership = SimpleNamespace(source=SimpleNamespace(mission="m1"), refused="", trouble="", counts={})
     return made
 
 
@@ -170,8 +170,6 @@ def test_it_reports_why_it_shows_nothing(markers: Any) -> None:
     assert markers.report()[:3] == (False, WARN, "no state from the observer yet")
     markers.state = STATE
     assert markers.report()[:3] == (True, OK, "running")
-    markers.membership.refused = "state 3"
-    assert markers.report()[:3] == (False, ERROR, "refused state 3")
 
 
 def test_a_position_is_shown_when_it_has_changed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -334,6 +332,21 @@ def test_the_page_knows_when_the_last_state_came(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(rospy, "get_time", lambda: 100.0)
     made.on_state(STATE, 1.0)
     assert made._received[1] == 100.0 and made._received[0] > 1e9
+
+
+def test_the_page_notes_what_is_wrong_with_a_robot_until_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: Any = UIPage.__new__(UIPage)
+    noted: List[Any] = []
+    monkeypatch.setattr(rospy, "get_time", lambda: 103.25)
+    mission = SimpleNamespace(state=STATE, elapsed=lambda now: now - 100.0)
+    shown = {"bot": "Porter 1", "b": "b"}.get
+    made._ui = SimpleNamespace(mission=mission, verdict=None, model=SimpleNamespace(shown=shown))
+    made._troubles, made._board = Troubles(), SimpleNamespace(note=lambda *entry: noted.append(entry))
+    made.on_robots("controller", trouble_values({"bot": "on its way to {b}: its goal is sent again"}))
+    assert noted == [(3.25, "Porter 1 on its way to b: its goal is sent again", BAD)]
+    made._ui.verdict = (0, "won")
+    made.on_robots("controller", trouble_values({"bot": "is 3.0 m from {b}"}))
+    assert len(noted) == 1
 
 
 @pytest.mark.parametrize("values, holds", [("10", True), ("12", False), ("20", False), ("30", True)])

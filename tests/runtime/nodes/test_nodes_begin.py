@@ -44,7 +44,7 @@ def replaced(monkeypatch: pytest.MonkeyPatch, module: ModuleType, names: Sequenc
 
 def test_a_controller_begins_without_an_observer_and_is_not_ready(monkeypatch: pytest.MonkeyPatch) -> None:
     parts = ("own_source", "Missions", "Exeggutor", "StatePrinter", "Alarm", "Witness", "subscribe_states", "subscribe",
-             "Diagnostics", "Links", "Ending", "flag", "Follower")  # fmt: skip
+             "Diagnostics", "Ending", "flag", "Follower")  # fmt: skip
     replaced(monkeypatch, controller, parts)
     made: Any = controller.Controller(Anything(), "")  # type: ignore[arg-type]
     assert made.observer == ""
@@ -56,7 +56,7 @@ def test_a_controller_begins_without_an_observer_and_is_not_ready(monkeypatch: p
 def test_the_ui_says_again_what_an_observer_has_not_heard_that_connects(monkeypatch: pytest.MonkeyPatch) -> None:
     shown = "AtDoors", "MissionView", "Readiness", "Terminal", "Turns", "strategies_of", "UIOrders"
     replaced(monkeypatch, ui_state, shown)
-    parts = ("Alarm", "Typed", "UIPage", "Traffic", "subscribe_states", "subscribe", "Diagnostics", "Links")
+    parts = ("Alarm", "Typed", "UIPage", "Traffic", "subscribe_states", "subscribe", "Diagnostics")
     newcomers = replaced(monkeypatch, ui, parts)
     options: Any = SimpleNamespace(nodes=("bot",), wait=1.0)
     made: Any = ui.UI(options, *(Anything() for _ in range(5)))  # type: ignore[arg-type]
@@ -68,7 +68,7 @@ def test_the_ui_says_again_what_an_observer_has_not_heard_that_connects(monkeypa
 def test_an_observer_begins_with_the_mission_of_its_source(monkeypatch: pytest.MonkeyPatch) -> None:
     parts = ("read_settings", "Ending", "Later", "own_source", "Missions", "Newest", "Witnesses", "Mission", "Model",
              "read_cover", "Journal", "Planner", "ServedFirst", "StatePrinter", "Alarm", "StateRepeats", "subscribe",
-             "start_thread", "Links", "Diagnostics", "take_up", "Inbox", "PlainWords", "last_mission", "mission_seen",
+             "start_thread", "Diagnostics", "take_up", "Inbox", "PlainWords", "last_mission", "mission_seen",
              "message_of", "format_state", "OrderDesk")  # fmt: skip
     replaced(monkeypatch, observer, parts)
     source = SimpleNamespace(mission="m1", read=lambda name: {"controllers": ["controller_bot1"]})

@@ -11,9 +11,8 @@ import pytest
 pytest.importorskip("rospy", reason="ROS is not installed")
 
 from pursue_runtime.model import Model
-from pursue_runtime.nodes import order_desk, ui_orders
-from pursue_runtime.nodes.order_desk import OrderDesk
-from pursue_runtime.nodes.ui_orders import UIOrders
+from pursue_runtime.nodes import order_desk
+from pursue_runtime.nodes.order_desk import OrderDesk, UIOrders
 from pursue_runtime.observer.ordering import OrderAnswer
 from tests.runtime.models import desk, model_data, mover
 from tests.waiting import PATIENCE, until
@@ -25,9 +24,8 @@ def graph(monkeypatch: pytest.MonkeyPatch) -> Dict[str, Any]:
     made: Dict[str, Any] = {"published": []}
     publisher = SimpleNamespace(publish=made["published"].append)
     subscribe = lambda topic, _, callback, *__, **___: made.__setitem__(topic, callback)
-    for module in (order_desk, ui_orders):
-        monkeypatch.setattr(module.rospy, "Publisher", lambda *_, **__: publisher)
-        monkeypatch.setattr(module, "subscribe", subscribe)
+    monkeypatch.setattr(order_desk.rospy, "Publisher", lambda *_, **__: publisher)
+    monkeypatch.setattr(order_desk, "subscribe", subscribe)
     monkeypatch.setattr(order_desk.rospy, "Service", lambda name, _, call: made.__setitem__(f"service {name}", call))
     monkeypatch.setattr(order_desk.rospy, "is_shutdown", lambda: False)
     return made

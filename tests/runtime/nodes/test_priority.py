@@ -14,7 +14,7 @@ pytest.importorskip("rospy", reason="ROS is not installed")
 AUTOGROUP = Path("/proc/self/autogroup")
 PROGRAM = """
 import os, pathlib
-from pursue_runtime.nodes.process import lower_priority
+from pursue_runtime.nodes.node import lower_priority
 def shown():
     print(os.nice(0), pathlib.Path("/proc/self/autogroup").read_text().split()[-1])
 shown()

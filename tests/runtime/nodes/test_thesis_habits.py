@@ -15,8 +15,7 @@ import rospy
 
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.node import Ending
-from pursue_runtime.nodes.plain_words import PlainWords
-from pursue_runtime.nodes.state_printer import StatePrinter
+from pursue_runtime.nodes.state_message import PlainWords, StatePrinter
 from pursue_runtime.parameters import ParameterError
 
 MODEL = Model(model_data(mover("bot", "robot", 9), worker("nurse", "human")))

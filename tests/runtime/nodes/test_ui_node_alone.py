@@ -40,8 +40,9 @@ def ui(monkeypatch: pytest.MonkeyPatch) -> Any:
     made.mission = SimpleNamespace(
         on_state=lambda *_: [], state=None, verdict=lambda: None, first_line=lambda _: "", elapsed=lambda _: 0.0,
         start=None, add_plan=lambda *given: made.done.append(("add_plan", *given)), due=lambda *_: ["word"],
-        next_moments=lambda _: (105.0, None), progress=lambda _: "", add_turns=lambda *_: None,
+        next_moments=lambda _: (105.0, None), progress=lambda _: "",
     )  # fmt: skip
+    made.strategies = {}
     made.page = Noting(made.done, url="", stays=False)
     made.terminal = Noting(made.done, is_terminal=False)
     made.events = SimpleNamespace(publish=lambda word: made.done.append(("publish", word)))

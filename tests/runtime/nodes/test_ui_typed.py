@@ -14,8 +14,8 @@ pytest.importorskip("rospy", reason="ROS is not installed")
 import rospy
 
 from pursue_runtime.model import Model
-from pursue_runtime.nodes import ui_typed
-from pursue_runtime.nodes.ui_typed import Typed, typed_lines
+from pursue_runtime.nodes import ui_terminal
+from pursue_runtime.nodes.ui_terminal import Typed, typed_lines
 from pursue_runtime.state import SystemState
 from tests.runtime.models import model_data, mover, state, worker
 from tests.waiting import until
@@ -130,7 +130,7 @@ def test_after_the_end_nothing_is_published() -> None:
 def test_lines_are_taken_as_they_are_typed(monkeypatch: pytest.MonkeyPatch) -> None:
     screen: Any = Screen()
     screen.ending = SimpleNamespace(end=lambda status: None)
-    monkeypatch.setattr(ui_typed, "sys", SimpleNamespace(stdin=io.StringIO("ping\nstop\n")))
+    monkeypatch.setattr(ui_terminal, "sys", SimpleNamespace(stdin=io.StringIO("ping\nstop\n")))
     screen.typed.start()
     until(lambda: screen.published == ["_ping_", "_stop_"], "both were published")
 
@@ -151,7 +151,7 @@ def test_where_the_terminal_is_gone_the_mission_goes_on_without_one(
 ) -> None:
     logged: List[str] = []
     monkeypatch.setattr(rospy, "logwarn", lambda text, *_: logged.append(text))
-    monkeypatch.setattr(ui_typed, "sys", SimpleNamespace(stdin=stream))
+    monkeypatch.setattr(ui_terminal, "sys", SimpleNamespace(stdin=stream))
     assert list(typed_lines()) == [] and "not read any more" in logged[0]
 
 
@@ -161,6 +161,6 @@ def test_where_the_terminal_is_gone_the_mission_goes_on_without_one(
 def test_who_is_asked_may_type(
     stream: Optional[io.StringIO], mode: str, is_read: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(ui_typed, "sys", SimpleNamespace(stdin=stream))
-    monkeypatch.setattr(ui_typed, "on_terminal", lambda: False)
+    monkeypatch.setattr(ui_terminal, "sys", SimpleNamespace(stdin=stream))
+    monkeypatch.setattr(ui_terminal, "on_terminal", lambda: False)
     assert Screen(mode=mode).typed.is_read == is_read

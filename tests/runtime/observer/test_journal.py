@@ -20,9 +20,8 @@ from pursue_runtime.folders import scenario_folder
 from pursue_runtime.model import Model
 from pursue_runtime.observer import records
 from pursue_runtime.observer.journal import Journal, last_mission
-from pursue_runtime.observer.mark import MARK
 from pursue_runtime.observer.mission import Mission
-from pursue_runtime.observer.records import format_record, read_records
+from pursue_runtime.observer.records import MARK, format_record, read_records
 from pursue_runtime.state import LIVE, SystemState, format_state
 from pursue_runtime.strategy import read_cover
 from tests.runtime.observer.test_holding import COVER, EVERYWHERE, answer

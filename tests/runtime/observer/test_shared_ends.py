@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from pursue_runtime.model import Model
 from pursue_runtime.observer.mission import Mission
-from pursue_runtime.observer.shared_ends import ALL, DOER
+from pursue_runtime.observer.reports import ALL, DOER
 from pursue_runtime.state import SystemState, format_state, parse_state
 from tests.runtime.models import everywhere
 from tests.together import CARRY, HOTEL, model

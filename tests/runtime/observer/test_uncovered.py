@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_runtime.model import Model, Position
-from pursue_runtime.observer.uncovered import uncovered_reason
+from pursue_runtime.observer.off_plan import uncovered_reason
 from pursue_runtime.sentences import in_words
 from pursue_runtime.strategy import read_cover
 from tests.runtime.models import model_data, worker

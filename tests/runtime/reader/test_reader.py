@@ -12,9 +12,9 @@ from typing import Any, Set
 import pytest
 
 from pursue_gen.workspace.generate import mission_of
-from pursue_runtime import trusted_keys as pursue_guard
+from pursue_runtime import bundle as pursue_guard
+from pursue_runtime.bundle import KeyFolder, read_keys
 from pursue_runtime.manifest import make_manifest, mission_id
-from pursue_runtime.trusted_keys import KeyFolder, read_keys
 from tests import waiting
 from tests.runtime.reader_stage import (
     DESK,

@@ -7,10 +7,10 @@ from typing import Any, Dict
 from pursue_runtime.doors.opened import Opened
 from pursue_runtime.model import Model
 from pursue_runtime.state import LOST, RUNNING, SystemState
-from pursue_runtime.ui.at_doors import AtDoors
 from pursue_runtime.ui.environment import TraceEnvironment
 from pursue_runtime.ui.mission_view import MissionView
 from pursue_runtime.ui.page import Facts, FloorPlan, Page
+from pursue_runtime.ui.waits import AtDoors
 from tests.runtime import models
 from tests.runtime.models import model_data, mover
 

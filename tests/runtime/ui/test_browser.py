@@ -17,7 +17,7 @@ from pursue_runtime.model import Model
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui.floor import Floor
 from pursue_runtime.ui.mission_view import reporters
-from pursue_runtime.ui.page import Facts, FloorPlan, Page
+from pursue_runtime.ui.page import BAD, NOTE, Facts, FloorPlan, Page
 from pursue_runtime.ui.promise import Objective, Promise
 from pursue_runtime.ui.statuses import Status
 from tests.runtime.models import desk, model_data, mover, state, worker
@@ -92,7 +92,8 @@ class Node:
         self.clock: Callable[[], float] = time.monotonic
         self.phase, self.verdict, self.shown = "ready", None, self.clock()
         self.answers, self.received, self.offers = True, 0.0, ()
-        page = Page(model, FloorPlan(places, ways), reporters(model, ends, {}), STATUSES, promise, strategies, floor)
+        people, known = reporters(model, ends, {}), {0: strategies}
+        page = Page(model, FloorPlan(places, ways), people, STATUSES, promise, known, floor)
         self.board = ui_board.PageServer(page, self)
         self.pictures = {} if floor is None else {ui_board.FLOOR: (floor.picture, "image/png")}
 
@@ -115,12 +116,16 @@ class Node:
         self.wanted.append(tuple(request))
         return "as you like"
 
+    def answer(self, *answer: Any) -> None:
+        self.board.page.on_answer(*answer)
+        self.board.show()
+
     def show(self, seq: int, at: float, clock: float = 50.0, **more: Any) -> None:
         self.phase, self.shown = "running", self.clock()
         facts = {name: more.pop(name) for name in ("commanded", "held", "out_of_service") if name in more}
         self.state = state(self.model, seq, 100.0 + at, dict.fromkeys(self.model.clocks, clock), **more)
         self.state = self.state._replace(**facts)
-        self.board.on_state(self.state, at)
+        self.board.page.on_state(self.state, at)
         self.board.show()
 
 
@@ -262,7 +267,7 @@ def test_the_page_says_that_the_observer_does_not_answer_and_since_when_and_that
     node.show(1, 5.0, event="_start_", nurse="doing_screw_in_s")
     page.wait("Number(document.getElementById('now').textContent) > 5.2")
     node.answers, node.received = False, 1.0e9
-    node.board.on_presence(5.0, False)
+    node.board.note(5.0, "the observer does not answer", BAD)
     as_of = page.value("new Date(1e12).toLocaleTimeString('en-GB')")
     says(page, "#link", f"the observer does not answer; this is as of {as_of}")
     says(page, "#log", "the observer does not answer")
@@ -271,7 +276,7 @@ def test_the_page_says_that_the_observer_does_not_answer_and_since_when_and_that
         assert page.value(f"document.querySelector('{button}').getAttribute('aria-disabled')") == "true"
     assert page.value("document.getElementById('stop').getAttribute('aria-disabled')") == "false", "it waits there"
     node.answers = True
-    node.board.on_presence(5.0, True)
+    node.board.note(5.0, "the observer answers again", NOTE)
     says(page, "#link", "connected")
     says(page, "#log", "the observer answers again")
     page.wait("document.querySelector('#tasks .done').getAttribute('aria-disabled') === 'false'")
@@ -610,8 +615,8 @@ def test_an_order_is_sent_once_with_the_time_that_is_wanted_and_its_answer_is_sh
     page.click("#order-buttons [data-word=tea]")
     says(page, "#remark", "as you like")
     assert node.wanted == [("order", "coffee", 1), ("order", "tea within 90", 1)]
-    node.board.on_answer(3.0, "coffee", True, "accepted: answered in 40 s at the latest")
-    node.board.on_answer(4.0, "tea within 90", False, "refused: {tea} is too late")
+    node.answer(3.0, "coffee", True, "accepted: answered in 40 s at the latest")
+    node.answer(4.0, "tea within 90", False, "refused: {tea} is too late")
     page.wait("document.querySelectorAll('#answers li').length === 2")
     says(page, "#answers .good", "coffee: accepted: answered in 40 s at the latest")
     says(page, "#answers .bad", f"refused: {HOSTILE} is too late")
@@ -633,7 +638,7 @@ def test_a_robot_is_taken_out_of_service_and_brought_back(page: Browser, show: C
     page.wait("document.querySelector('[data-robot=bot]').getAttribute('aria-disabled') === 'false'")
     page.value("document.querySelector('[data-robot=bot]').click()")
     page.wait("document.querySelector('[data-robot=bot]').getAttribute('aria-disabled') === 'true'")
-    node.board.on_answer(3.0, "leave bot", True, "{bot} is out of service")
+    node.answer(3.0, "leave bot", True, "{bot} is out of service")
     page.wait("document.querySelectorAll('#answers li').length === 1")
     says(page, "#answers .good", "leave bot: bot is out of service")
     assert page.value("document.querySelectorAll('#answers button').length") == 0
@@ -659,7 +664,7 @@ def test_what_is_written_is_ordered_too(page: Browser, show: Callable[..., Node]
     page.click("#write")
     says(page, "#remark", "as you like")
     assert node.wanted == [("order", "bot at b within 90", 1)]
-    node.board.on_answer(3.0, "urgent bot at b within 90", True, "accepted: answered in 40 s at the latest")
+    node.answer(3.0, "urgent bot at b within 90", True, "accepted: answered in 40 s at the latest")
     page.wait("document.querySelectorAll('#answers li').length === 1")
     node.show(2, 5.0, event="_start_")
     page.wait("view.seq === 2")

@@ -37,7 +37,7 @@ SPOTS = {"bot2": {"b": (9.0, 0.8)}}
 
 def shown(now: Any, group: str, picture: Any = None) -> List[Mark]:
     """What is shown in a group."""
-    return [mark for mark in (picture or Picture(MODEL, PLAN, SPOTS)).marks(now) if mark.group == group]
+    return [mark for mark in (picture or Picture(MODEL, PLAN, SPOTS, {})).marks(now) if mark.group == group]
 
 
 def at(status: str = "running", reason: str = "", **more: Any) -> Any:
@@ -88,7 +88,8 @@ def test_the_next_command_of_the_strategy_is_a_pale_arrow_and_stands_behind_what
     table = [{"state": {"bot": "b", "bot2": "a"}, "commands": [there]},
              {"state": {"bot": "b", "bot2": "going_a_to_b"}, "commands": [back]}]  # fmt: skip
     given = {"commands_agents": ["bot", "bot2"], "reaction": "1/10", "strategy": table}
-    picture = Picture(MODEL, PLAN, SPOTS, [Strategy(given)])
+    known = {0: [Strategy(given)]}
+    picture = Picture(MODEL, PLAN, SPOTS, known)
     now = at(bot="going_a_to_b")
     to_b, to_a = shown(now, "next", picture)[::-1]
     assert (to_b.kind, to_b.points) == (ARROW, (PLACES["a"], SPOTS["bot2"]["b"]))
@@ -99,7 +100,7 @@ def test_the_next_command_of_the_strategy_is_a_pale_arrow_and_stands_behind_what
     assert shown(at("holding", bot="going_a_to_b"), "next", picture) == []
     other = now._replace(plan=7)
     assert shown(other, "next", picture) == [], "the strategy of a plan that has not come is not known"
-    picture.add_plan(7, [Strategy({**given, "strategy": table[:1]})])
+    known[7] = [Strategy({**given, "strategy": table[:1]})]
     assert [mark.points for mark in shown(other, "next", picture)] == [to_b.points]
 
 
@@ -131,17 +132,17 @@ def test_the_status_and_its_reason_stand_above_the_map() -> None:
 @pytest.mark.parametrize(("scale", "size"), [(0.01, 0.15), (1.0, 0.6), (100.0, 1.5)])
 def test_marks_fit_the_size_of_the_map(scale: float, size: float) -> None:
     places = {name: (x * scale, y * scale) for name, (x, y) in PLACES.items()}
-    picture = Picture(MODEL, FloorPlan(places, ()), {})
+    picture = Picture(MODEL, FloorPlan(places, ()), {}, {})
     assert [mark.size for mark in shown(None, "places", picture)] == pytest.approx([size] * 3)
     assert shown(None, "ways", picture) == []
 
 
 def test_a_map_without_places_shows_nothing() -> None:
-    assert Picture(MODEL, FloorPlan({}, ()), {}).marks(at()) == []
+    assert Picture(MODEL, FloorPlan({}, ()), {}, {}).marks(at()) == []
 
 
 def test_a_group_has_one_kind_of_thing_and_texts_have_words() -> None:
-    for mark in Picture(MODEL, PLAN, SPOTS).marks(at(bot="going_a_to_b")):
+    for mark in Picture(MODEL, PLAN, SPOTS, {}).marks(at(bot="going_a_to_b")):
         assert bool(mark.text) == (mark.kind == TEXT) and mark.size > 0.0 and mark.points
 
 

@@ -7,7 +7,7 @@ from typing import List, Tuple
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_runtime.ui.presence import LOOKS, Presence
+from pursue_runtime.links import LOOKS, Presence
 
 
 def looked(presence: Presence, *looks: Tuple[bool, int]) -> List[bool]:

@@ -10,12 +10,10 @@ from pursue_runtime.data import DataError
 from pursue_runtime.model import Model
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui.course import course
-from pursue_runtime.ui.outlook import Outlook
+from pursue_runtime.ui.outlook import Outlook, reason_text, reasons
 from pursue_runtime.ui.page import Facts, FloorPlan, Page
-from pursue_runtime.ui.page_server import PageServer
-from pursue_runtime.ui.reasons import reason_text, reasons
 from pursue_runtime.ui.statuses import Status
-from pursue_runtime.ui.strategies import strategies_of
+from pursue_runtime.ui.strategies import strategies_in, strategies_of
 from tests.runtime.models import model_data, mover, state, worker
 
 DATA = model_data(mover("bot", "robot", 9), mover("thief", "agent", 20), worker("arm", "robot"))
@@ -121,7 +119,7 @@ GOES = strategy({ASKED: [GO], ("a", "b", 0): [REST], ("b", "a", 0): [SCREW], ("g
 
 
 def test_the_page_keeps_the_reason_as_long_as_the_robot_does_what_it_was_sent_for() -> None:
-    page = Page(MODEL, FloorPlan({}, ()), strategies=(GOES,))
+    page = Page(MODEL, FloorPlan({}, ()), strategies={0: (GOES,)})
     view, bot = sight(page, state(MODEL, 1, 0.0, {}))
     assert bot["then"]["does"] == "go to b" and 2.0 < bot["then"]["at"] < 2.1 and bot["why"] == ""
     assert bot["then"]["certain"]
@@ -138,19 +136,20 @@ def test_the_page_keeps_the_reason_as_long_as_the_robot_does_what_it_was_sent_fo
 
 
 def test_what_is_seen_in_a_state_is_found_once() -> None:
-    outlook = Outlook(MODEL, (), (GOES,))
+    known = {0: (GOES,)}
+    outlook = Outlook(MODEL, (), known)
     now = state(MODEL, 1, 0.0, {})
     seen = outlook.sight(now, 0.0, ())
     assert seen.planned and outlook.sight(now, 0.0, ()) is seen
     assert outlook.sight(now, 1.0, ()) is not seen
     later = outlook.sight(now._replace(seq=2), 1.0, ())
-    outlook.add_plan(1, ())
+    known[0] = (strategy({}),)
     assert outlook.sight(now._replace(seq=2), 1.0, ()) is not later
 
 
 def answer(known: Strategy, now: Any) -> Any:
     """What the page says that the strategy does if the thief goes to b."""
-    view, _ = sight(Page(MODEL, FloorPlan({}, ()), strategies=(known,)), now)
+    view, _ = sight(Page(MODEL, FloorPlan({}, ()), strategies={0: (known,)}), now)
     thief = next(agent for agent in view["agents"] if agent["name"] == "thief")
     (found,) = [each["answer"] for each in thief["next"] if each["may"] == "go to b"]
     return found
@@ -164,26 +163,24 @@ def test_the_answer_to_what_another_may_do_is_said_where_it_changes_what_is_next
 
 
 def test_without_the_state_of_the_decision_no_reason_is_known() -> None:
-    page = Page(MODEL, FloorPlan({}, ()), strategies=(GOES,))
+    page = Page(MODEL, FloorPlan({}, ()), strategies={0: (GOES,)})
     sight(page, state(MODEL, 1, 0.0, {}))
     away = state(MODEL, 3, 3.0, {"Cbot": 0.0}, event="bot_a2b", agent="bot", bot="going_a_to_b")
     assert sight(page, away._replace(commanded=True))[1]["why"] == ""
 
 
 def test_a_new_plan_has_its_own_reasons_and_one_that_is_not_known_has_none() -> None:
-    class Node:
-        lock = None
-
-    page = Page(MODEL, FloorPlan({}, ()), strategies=(GOES,))
-    server = PageServer(page, Node())  # type: ignore[arg-type]
+    known: Dict[int, Any] = {0: (GOES,)}
+    page = Page(MODEL, FloorPlan({}, ()), strategies=known)
     planned = state(MODEL, 5, 20.0, {}, bot="b")._replace(plan=1)
     view, bot = sight(page, planned)
     assert (view["next"], bot["then"], view["planned"]) == (None, None, False)
     back = {"do": BACK[0], "agent": "bot", "from": "b", "to": BACK[3], "when": [BACK[4]]}
     entry = {"state": {"bot": "b", "thief": "a", "Prule": 0}, "commands": [back]}
     data = {"commands_agents": ["bot"], "reaction": 0.1, "strategy": [entry]}
-    server.on_plan({"plan": 1, "strategies": {"controller_bot": {"reaction": "x"}}, "people": None})
-    server.on_plan({"plan": 1, "strategies": {"controller_bot": data}, "people": None})
+    with pytest.raises(DataError, match="strateg"):
+        strategies_in({"plan": 1, "strategies": {"controller_bot": {"reaction": "x"}}, "people": None})
+    known[1] = strategies_in({"plan": 1, "strategies": {"controller_bot": data}, "people": None})
     assert sight(page, planned)[0]["next"]["says"] == "bot is to go to a"
 
 

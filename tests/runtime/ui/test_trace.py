@@ -7,7 +7,7 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_runtime.ui.trace import TraceError, read_trace
+from pursue_runtime.ui.environment import TraceError, read_trace
 
 WORDS = ["thief_a2b", "thief_b2a", "screw"]
 

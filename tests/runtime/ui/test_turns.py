@@ -12,7 +12,7 @@ from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui.environment import TraceEnvironment
 from pursue_runtime.ui.mission_view import MissionView
 from pursue_runtime.ui.outlook import Outlook
-from pursue_runtime.ui.turns import Turns
+from pursue_runtime.ui.waits import Turns
 from tests.runtime.models import model_data, mover, state
 
 
@@ -54,22 +54,23 @@ def test_who_waits_for_whom_is_said_as_the_order_is(visit: str, waits: Dict[str,
     there = {"bot_1": "b"} if visit == "has_bot_1_1" else {}
     waits = {name: text for name, text in waits.items() if name not in there}
     now = state(MODEL, 1, 0.0, {}, b_passage=visit, **there)
-    assert Turns(MODEL, (STRATEGY,)).waits(now) == waits
-    sight = Outlook(MODEL, (), (STRATEGY,)).sight(now, 0.0, ())
+    assert Turns(MODEL, {0: (STRATEGY,)}).waits(now) == waits
+    sight = Outlook(MODEL, (), {0: (STRATEGY,)}).sight(now, 0.0, ())
     assert {name: agent["why"] for name, agent in sight.agents.items() if agent["why"]} == waits
 
 
 def test_nobody_waits_on_the_way_or_while_the_mission_holds() -> None:
-    turns = Turns(MODEL, (STRATEGY,))
+    turns = Turns(MODEL, {0: (STRATEGY,)})
     assert turns.waits(state(MODEL, 1, 0.0, {}, b_passage="has_bot_1_1", bot_1="b", bot2="going_a_to_b")) == {}
     assert turns.waits(state(MODEL, 1, 0.0, {}, "holding", b_passage="has_bot_1_1", bot_1="b")) == {}
 
 
 def test_a_new_plan_has_its_own_orders() -> None:
-    turns = Turns(MODEL, ())
+    known: Dict[int, Any] = {0: ()}
+    turns = Turns(MODEL, known)
     now = state(MODEL, 1, 0.0, {}, bot_1="b", b_passage="has_bot_1_1")._replace(plan=1)
     assert turns.waits(now) == {}
-    turns.add_plan(1, (STRATEGY,))
+    known[1] = (STRATEGY,)
     assert turns.waits(now) == {"bot2": "waits for Porter to leave the hall"}
 
 
@@ -77,12 +78,12 @@ def test_behind_the_last_visit_of_an_order_that_goes_round_comes_the_first_one()
     passage = order("b", "bot_1", "bot2")
     del passage["locations"]["awaits_nobody"]
     model = Model(model_data(mover("bot_1", "robot", 9), mover("bot2", "robot", 9), passage))
-    turns = Turns(model, (Strategy({**AGENTS, "strategy": [entry("awaits_bot_1_1", "bot_1")]}),))
+    turns = Turns(model, {0: [Strategy({**AGENTS, "strategy": [entry("awaits_bot_1_1", "bot_1")]})]})
     assert turns.waits(state(model, 1, 0.0, {}, b_passage="has_bot2_2")) == {"bot_1": "waits for bot2 to leave b"}
 
 
 def test_the_terminal_says_it_too() -> None:
-    view = MissionView(MODEL, TraceEnvironment(()), turns=Turns(MODEL, (STRATEGY,)))
+    view = MissionView(MODEL, TraceEnvironment(()), turns=Turns(MODEL, {0: (STRATEGY,)}))
     view.on_state(state(MODEL, 1, 0.0, {}, event="_start_", bot_1="b", b_passage="has_bot_1_1"), 0.0)
     assert "bot2 a (waits for Porter to leave the hall)" in view.progress(3.0)
 

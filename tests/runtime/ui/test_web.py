@@ -363,7 +363,7 @@ def test_the_server_has_ended_when_it_is_closed(serve: Serve, monkeypatch: pytes
     web = serve()
     assert get(web).status == 200
     web.close()
-    assert not web._thread.is_alive(), "else what was sent is lost with the process"
+    assert not web._background._thread.is_alive(), "else what was sent is lost with the process"
 
 
 @pytest.mark.parametrize("text", ["", "x token", "65536 token", "-1 token", "²"])

@@ -32,10 +32,9 @@ from pursue_gen.tools.replanning.request import read_request
 from pursue_gen.tools.replanning.start import network_from, start_clocks
 from pursue_gen.tools.replanning.tours import tours_from_here
 from pursue_gen.tools.simulation.faults import Crash
-from pursue_gen.tools.simulation.make import make_case
 from pursue_gen.tools.simulation.mission import START, SimulatedMission
 from pursue_gen.tools.simulation.outcome import SAFE, Settings
-from pursue_gen.tools.simulation.runs import MissionRunner
+from pursue_gen.tools.simulation.runs import MissionRunner, make_case
 from pursue_gen.workspace.model_file import model_data
 from pursue_runtime.model import Model, Position
 from pursue_runtime.state import SystemState

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from pursue_gen.tools.simulation.became_true import BecameTrue
-from pursue_gen.tools.simulation.junk import JUNK, junk_word
+from pursue_gen.tools.simulation.faults import JUNK, junk_word
+from pursue_gen.tools.simulation.recorder import BecameTrue
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import SystemState
 from tests.tools.simulation.stages import stage

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 from pursue_gen.language import parse
-from pursue_gen.tools.simulation.driven import Driven
+from pursue_gen.tools.simulation.recorder import Driven
 from tests.cli.test_commands import pursue
 
 TRIP = """poi "a"

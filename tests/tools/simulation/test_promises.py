@@ -10,8 +10,8 @@ import pytest
 from pursue_gen.language import parse
 from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.tools.simulation.duties import Duty
 from pursue_gen.tools.simulation.mission import simulate_mission
-from pursue_gen.tools.simulation.open_requests import Duty
 from pursue_gen.tools.simulation.outcome import Settings
 from pursue_gen.tools.simulation.promises import Promises
 from pursue_gen.tools.simulation.stage import stage_of
