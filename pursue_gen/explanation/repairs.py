@@ -28,7 +28,7 @@ from pursue_gen.language.statements.event import MOST_EVENT_PARTS
 from pursue_gen.language.template import name_text
 from pursue_gen.language.times import instead, like
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules
-from pursue_gen.tga.counts import counted
+from pursue_gen.tga.rules import counted
 
 _FINEST = 1000
 """The largest denominator of a reaction that the command line takes."""

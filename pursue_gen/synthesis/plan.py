@@ -32,7 +32,7 @@ from pursue_gen.synthesis.plan_reader import RUN_AGAIN, Names, Reader, printed_l
 from pursue_gen.synthesis.plan_text import assign_text, guard_text, sync_text, zones_text
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Move, Strategy, Zone, with_automata_of
 from pursue_gen.tga.network import Network, Objective
-from pursue_gen.tga.uppaal_keywords import with_own_names
+from pursue_gen.tga.uppaal_write import with_own_names
 
 _ESCAPE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 _HEADER = re.compile(r"^[ \t]*(Strategy|Counter[ -]strategy) to [^\n:]*:[ \t\r]*$", re.MULTILINE | re.IGNORECASE)
