@@ -8,11 +8,11 @@ from typing import Any, Iterator, Sequence, Tuple, Union, cast
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.explanation.ablations import without_conditions
-from pursue_gen.explanation.as_written import as_written
-from pursue_gen.explanation.assumption_changes import assumption_changes
 from pursue_gen.explanation.number_changes import (
     SLOWER,
     Repair,
+    as_written,
+    assumption_changes,
     battery_changes,
     count_changes,
     event_changes,

@@ -11,7 +11,7 @@ from pursue_gen.language.draft import Draft
 from pursue_gen.tools.lsp.positions import UTF_16, Positions
 
 if TYPE_CHECKING:
-    from pursue_gen.explanation.sizes import Size
+    from pursue_gen.explanation.decided import Size
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class OpenDocument(Draft):
     @cached_property
     def sizes(self) -> Tuple[Size, ...]:
         """What the statements of its objectives cost; () while something is wrong with it, or there is none."""
-        from pursue_gen.explanation.sizes import sizes
+        from pursue_gen.explanation.decided import sizes
 
         wrong = any(finding.severity is Severity.ERROR for finding in self.findings)
         return () if wrong else sizes(self.scenario)
