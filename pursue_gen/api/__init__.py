@@ -16,13 +16,15 @@ from pursue_gen.api.solutions import (
     explain,
     problem_of,
     promises_of,
+    replan,
+    simulate,
     solve,
     solve_game,
     verdict_of,
     verify,
     verify_game,
+    write_workspace,
 )
-from pursue_gen.api.uses import replan, simulate, write_workspace
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, Span
 from pursue_gen.language import scenario
 from pursue_gen.language.scenario import *

@@ -22,9 +22,8 @@ from pursue_gen.survey.copying import SURVEY, others_windows, rounded, with_ways
 from pursue_gen.survey.graph import graph_of
 from pursue_gen.survey.grid import Grid, grid_of
 from pursue_gen.survey.plan import Pair, Plan
-from pursue_gen.survey.routes import Route, Routes
+from pursue_gen.survey.routes import Drive, Route, Routes, window
 from pursue_gen.survey.spots import Spots, Standing, proposed_spots
-from pursue_gen.survey.times import Drive, window
 from pursue_gen.workspace.levels import Level, check_levels, on_level
 from pursue_gen.workspace.map_check import check_spots
 from pursue_gen.workspace.map_spots import with_poses, with_spots

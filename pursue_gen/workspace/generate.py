@@ -20,7 +20,7 @@ from pursue_gen.language.scenario import Reach, Safety, Scenario
 from pursue_gen.language.sentences import condition_of_promise, end_words
 from pursue_gen.language.times import time_units
 from pursue_gen.outcomes import Invalid
-from pursue_gen.partition import SubStrategy, partition, strategy_file, unneeded
+from pursue_gen.partition import SubStrategy, partition, strategy_data, unneeded
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.synthesis.plan import write_plan
 from pursue_gen.synthesis.strategy import Strategy
@@ -75,7 +75,7 @@ def generate(
     data = {
         "poses": poses_text(scenario, where),
         "model": model_file.render(network, objective, scenario, options.reaction, __version__).encode(),
-        "cover": strategy_file.render_cover(strategy, scenario.name, __version__).encode(),
+        "cover": strategy_data.render_cover(strategy, scenario.name, __version__).encode(),
         "game": game_file.render(scenario, options, strategy, plan, __version__).encode(),
         "expected": _expected(network, objective, scenario, controllers),
         "ui": ui_file.render(
@@ -181,7 +181,7 @@ def _packages(
     packages = []
     people: Dict[str, bytes] = {}
     for sub in subs:
-        text = strategy_file.render(sub, scenario.name, __version__, options.reaction).encode()
+        text = strategy_data.render(sub, scenario.name, __version__, options.reaction).encode()
         if sub.controller == _UI:
             people = {f"config/{_PEOPLE}.yaml": text}
             continue

@@ -13,8 +13,7 @@ from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.tools.draw.solve_work import Progressing, Work, working
-from pursue_gen.tools.play.games import session_of
-from pursue_gen.tools.play.session import Session, answer, choices, opening
+from pursue_gen.tools.play.session import Session, answer, choices, opening, session_of
 
 _NOT_HERE = ("save", "quit", "exit")
 

@@ -28,8 +28,7 @@ from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import IDEAL
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import Limits, Progress
-from pursue_gen.tools.report.make import ReportOptions, lost_report, won_report
-from pursue_gen.tools.report.whole import report_page
+from pursue_gen.tools.report.whole import ReportOptions, lost_report, report_page, won_report
 from pursue_gen.workspace.levels import Level
 from pursue_gen.workspace.map_spots import with_spots
 from pursue_gen.workspace.robot_size import Told, sizes_of

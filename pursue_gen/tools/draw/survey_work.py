@@ -46,8 +46,8 @@ def survey(given: SurveyWork, pipe: Connection) -> None:
 def _measured(given: SurveyWork, floor: Path) -> Dict[str, Any]:
     from pursue_gen.survey.copying import with_sizes
     from pursue_gen.survey.make import Options, surveyed  # needs numpy and scipy
+    from pursue_gen.survey.routes import Drive
     from pursue_gen.survey.survey_table import table
-    from pursue_gen.survey.times import Drive
 
     scenario = read_placed(given.text, given.file)
     scenario = read_placed(with_sizes(scenario, sizes_of(scenario, given.told)), given.file)
