@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Sequence
+from typing import TYPE_CHECKING, Optional, Sequence, Tuple
 
-from pursue_gen.cli.console import show
+from pursue_gen.cli.console import info, show
 
 if TYPE_CHECKING:
     from pursue_gen.language.scenario import Scenario
@@ -36,3 +37,47 @@ def settled(scenario: Scenario, request: SolveRequest, quiet: bool = False) -> S
 
     with progress_line(quiet) as progress:
         return api.settle(scenario, request, progress)
+
+
+if TYPE_CHECKING:
+    from pursue_gen.diagnostics import Diagnostic
+    from pursue_gen.drawing.floor import Floor
+    from pursue_gen.language.scenario import Scenario
+    from pursue_gen.workspace.levels import Level
+    from pursue_gen.workspace.robot_size import Sizes, Told
+
+Levels = Tuple["Level", ...]
+
+
+def placed_on(scenario: Scenario, file: Path, distance: float, told: Told) -> Tuple[Scenario, Optional[Floor], Levels]:
+    """The scenario with the spots that its maps have room for, the floor plan with the paths of its ways, None of
+    several levels, and the levels; findings are printed. Raises PursueError for a map that cannot be used."""
+    from pursue_gen.drawing.floor_picture import read_floor
+    from pursue_gen.workspace.levels import read_levels
+    from pursue_gen.workspace.map_spots import with_spots
+    from pursue_gen.workspace.robot_size import sizes_of
+
+    levels, sizes = read_levels(file), sizes_of(scenario, told)
+    floor = read_floor(file) if levels[0].elevation is None else None
+    findings, levels = on_map(scenario, levels, distance, sizes)
+    show(findings)
+    floor = None if floor is None else replace(floor, paths=levels[0].ways)
+    return with_spots(scenario, levels, distance, sizes), floor, levels
+
+
+def on_map(scenario: Scenario, levels: Levels, distance: float, sizes: Sizes) -> Tuple[Tuple[Diagnostic, ...], Levels]:
+    """The findings of `survey`, and the levels with the paths of the ways; of the points alone, and no paths, where its
+    packages or pixels are missing."""
+    from pursue_gen.workspace.map_check import check_spots
+
+    if all(level.ground.cells is not None for level in levels):
+        try:
+            import scipy
+
+            from pursue_gen.survey.make import found_on_map
+        except ImportError:
+            info("Ways are not looked at on the map without numpy and scipy: pip install 'pursue-gen[survey]'")
+        else:
+            del scipy
+            return found_on_map(scenario, levels, distance, sizes)
+    return check_spots(scenario, levels, distance, sizes), levels

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, List, Optional
 import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
-from pursue_gen.cli.on_map import placed_on
+from pursue_gen.cli.inputs import placed_on
 from pursue_gen.cli.options import EXPLAIN, MISSION, REQUEST, ROBOT, SCENARIO, SPOT_DISTANCE, choice, with_request
 from pursue_gen.files import shell_quoted
 

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, List, Optional
 import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
-from pursue_gen.cli.inputs import scenario_from
-from pursue_gen.cli.on_map import placed_on
+from pursue_gen.cli.inputs import placed_on, scenario_from
 from pursue_gen.cli.options import DEFAULT_DISTANCE, JSON, REQUEST, ROBOT, SCENARIO, choice, with_request
 from pursue_gen.diagnostics import counted, error, usage_error
 from pursue_gen.files import shell_quoted
