@@ -10,8 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, List, Mapping, Optional, Tuple
 
-from pursue_gen.api.requests import File, check_words, default_request
-from pursue_gen.api.scenarios import Game, game, settle
+from pursue_gen.api.scenarios import File, Game, check_words, default_request, game, settle
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Agent, Scenario

@@ -1,7 +1,7 @@
 """What makes a scenario too large to be decided, and what is decided of it.
 
-All is solved with more time (see `longer`). Of several objectives each is solved alone, then several together (see
-`decided`), then all in cheaper forms (see `cheaper`). Then parts are left out, each alone, and where there is one
+All is solved with more time (see `offers`). Of several objectives each is solved alone, then several together (see
+`decided`), then all in cheaper forms (see `offers`). Then parts are left out, each alone, and where there is one
 objective, several together. Each smaller scenario is solved with a share of a fixed budget of work, the one that seems
 smallest first.
 """
@@ -15,10 +15,9 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.ablations import Part, without_each
-from pursue_gen.explanation.cheaper import Form, cheaper
 from pursue_gen.explanation.decided import Decided, decided, texts
 from pursue_gen.explanation.decided import as_json as decided_json
-from pursue_gen.explanation.longer import Longer, longer
+from pursue_gen.explanation.offers import Form, Longer, cheaper, longer
 from pursue_gen.explanation.part import game_of
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import LimitHit

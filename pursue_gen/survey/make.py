@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Dict, FrozenSet, Iterator, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Severity, counted, error, in_order, usage_error
-from pursue_gen.drawing.clearance import Clearance
+from pursue_gen.drawing.ground import Clearance
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.numbers import Number

@@ -27,7 +27,7 @@ from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.event_words import event_word
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.uppaal_write import write_network, write_query
-from pursue_gen.workspace import context, deploy, expected, game_file, model_file, ui_file
+from pursue_gen.workspace import context, deploy, game_file, model_file, ui_file
 from pursue_gen.workspace.context import Options
 from pursue_gen.workspace.packages import (
     RECEIVING,
@@ -67,7 +67,7 @@ def generate(
     where = placing(scenario, options.spot_distance)
     templates = templates_dir()
     jinja = environment(templates)
-    trace = expected.first_report(network)
+    trace = model_file.first_report(network)
     plan = write_plan(strategy, network, objective)
     values = context.common(scenario, objective, options, controllers)
     values["plays"] = _plays(scenario, trace)
@@ -229,7 +229,7 @@ def _expected(network: Network, objective: Objective, scenario: Scenario, contro
     robots = {agent.name for agent in scenario.agents if agent.is_robot}
     owner = {agent: sub.controller for sub in controllers for agent in sub.agents if agent in robots}
     nodes = ["observer", "simulator", _UI, *commands]
-    return expected.expected(network, objective, owner, commands, nodes)
+    return model_file.expected(network, objective, owner, commands, nodes)
 
 
 def _controllers(values: Mapping[str, Any]) -> bytes:

@@ -126,8 +126,8 @@ def _check_target(target: Path) -> None:
 
 def _print_tables(file: Path, reach_obj: Optional[str], request: SolveRequest, as_json_: bool) -> None:
     from pursue_gen import api
+    from pursue_gen.cli.inputs import naming_costs
     from pursue_gen.cli.progress import progress_line
-    from pursue_gen.cli.solution import naming_costs
     from pursue_gen.tools.report import commands
     from pursue_gen.tools.report.whole import solved_games
 
@@ -157,7 +157,7 @@ def _made(scenario: Scenario, options: ReportOptions, solving: SolveOptions) -> 
     """The report, with lines of progress while it is made."""
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.language.numbers import decimal_text
-    from pursue_gen.tools.commands.mission_count import counting
+    from pursue_gen.tools.commands.progress import counting
     from pursue_gen.tools.report.whole import lost_report, solved_both, won_report
 
     try:
