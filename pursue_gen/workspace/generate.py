@@ -105,12 +105,6 @@ def generate(
     return files
 
 
-def controllers_of(scenario: Scenario, network: Network, strategy: Strategy, options: Options) -> Tuple[str, ...]:
-    """The names of the controllers, in order."""
-    subs = partition(strategy, network, scenario.agents, options.controllers, options.reach_obj)
-    return tuple(sub.controller for sub in subs if sub.controller != _UI)
-
-
 def mission_of(scenario: str, files: Mapping[str, bytes]) -> Tuple[Manifest, Dict[str, bytes]]:
     """The mission in a workspace as `generate` returns it: its manifest, and `package/name.yaml` → content.
 
