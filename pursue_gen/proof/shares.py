@@ -7,35 +7,26 @@ time but need not come: so it wins whatever the others do. Only what they comman
 at any time what he can do to those whom it names (see `tga.hidden`), but must not stop time (see `independence`); that
 those whom another share names do not is shown there. Then each play of the network shows each share one of its plays.
 
-What a share keeps though its blocks do not name it, automata on whose location its commands do not depend, is looked at
-apart: each alone, beside those that the blocks name, in a game in which each block is repeated for each of its
-locations. The others of that kind are hidden there and have games of their own, so a round of many places takes as many
-small games, and not one of all of them.
-
-A command is not made stale by what the strategy does not name: if only the automaton changes, a command on its way
-stays on its way. In the game apart it is given anew, and may then be late once more; if nothing tells what to do there,
-that game fails. For that, no other advice may follow in a block where a command is due: the block has at most one
-command, and waits only before it, by a clock that the automaton does not reset.
+What a share is to avoid and its blocks do not name is looked at apart, in a game for each of these (see `apart`).
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import AbstractSet, Iterator, List, Mapping, Sequence, Set, Tuple, Union
+from typing import AbstractSet, Iterator, List, Sequence, Set, Tuple, Union
 
-from pursue_gen.language.network_names import AT_RISK, LOSE
+from pursue_gen.language.network_names import LOSE
+from pursue_gen.proof.apart import games_apart, kept_apart
 from pursue_gen.proof.independence import why_it_matters, with_clocks_of
-from pursue_gen.proof.moves import Arena, State
 from pursue_gen.proof.relaxed_reachability import Commanded, Extent, commanded, live
 from pursue_gen.proof.stages import StagePart
-from pursue_gen.synthesis.strategy import Block, Command, Move, Place, Strategy, Zone
+from pursue_gen.proof.watched import why_it_may_miss
+from pursue_gen.synthesis.strategy import Block, Place, Strategy
 from pursue_gen.tga.hidden import HIDDEN, has_hidden, with_hidden
-from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Network, Objective, with_controllability
+from pursue_gen.tga.network import Automaton, Kind, Network, Objective, with_controllability
 from pursue_gen.tga.part import part_of, without_unnamed_clocks
-from pursue_gen.tga.scale import common_denominator
 from pursue_gen.tga.tours import Tour
 from pursue_gen.tga.watchers import Watcher
-from pursue_gen.zones.dbm import raw
 
 
 def shares_of(network: Network, objective: Objective, strategy: Strategy) -> Iterator[StagePart]:
@@ -173,165 +164,3 @@ def _unguarded(objective: Objective, kept: AbstractSet[str], extent: Extent) -> 
         f"{name}.{place}" for name, place in objective.bad if name not in kept and place in extent.places[name]
     ]
     return f"no share guards against {open_ones[0]}" if open_ones else ""
-
-
-_MOST = 100_000
-"""So many discrete states are looked at. Measured on 40 lab scenarios."""
-
-
-def why_it_may_miss(network: Network, watcher: Watcher, automata: AbstractSet[str], variables: AbstractSet[str]) -> str:
-    """Why the objective may be broken though the watcher is kept; "" if it cannot: whenever the objective's automaton
-    waits with a deadline, so does the watcher's, with a clock that is at least as large and a deadline that is no
-    longer. All plays are looked at, whatever the clocks are.
-
-    `automata` and `variables` are seen, the others may be anywhere (see `tga.hidden`). Requires that the watcher is one
-    of the network's automata, and seen.
-    """
-    assert watcher.name in automata
-    watched, narrower = network.automaton(watcher.objective), network.automaton(watcher.name)
-    fault = _why_it_is_none(watched, narrower)
-    if fault:
-        return fault
-    freed = network.with_each(lambda a: a.with_edges(_with_any(a, variables)) if a is watched else a)
-    game = with_hidden(freed, part_of(freed, automata | {watcher.objective}, variables))
-    arena = Arena(game, common_denominator(game.times))
-    places = {automaton.name: k for k, automaton in enumerate(game.automata)}
-    theirs, own = places[watcher.objective], places[watcher.name]
-    since, own_since = (arena.clock[_deadline(automaton).clock] for automaton in (watched, narrower))
-
-    def is_missed(state: State) -> bool:
-        return state[0][theirs] == AT_RISK != state[0][own]
-
-    found, waiting = {arena.initial}, [arena.initial]
-    if is_missed(arena.initial):
-        return "the objective is at risk before it is"
-    longer = arena.start.m[since * arena.start.dim + own_since] > raw(0, strict=False)
-    if arena.initial[0][theirs] == AT_RISK and longer:  # in the middle of a play
-        return "the objective may have been at risk for longer"
-    while waiting:
-        state = waiting.pop()
-        for move in arena.situation(state).moves:
-            target = move.target
-            if move.enabled is None or LOSE in (target[0][theirs], target[0][own]):
-                continue  # how long each is at risk is compared by the clocks
-            if is_missed(target):
-                return "the objective may be at risk when it is not"
-            stays = state[0][theirs] == AT_RISK and own_since not in move.resets
-            if target[0][theirs] == AT_RISK and since not in move.resets and not stays:
-                return "the objective may be at risk for longer"
-            if target not in found:
-                found.add(target)
-                waiting.append(target)
-        if len(found) > _MOST:
-            return "there are too many states to look at"
-    return ""
-
-
-def _why_it_is_none(watched: Automaton, own: Automaton) -> str:
-    """Why these are no automata of an objective with a deadline and its watcher; "" if they are."""
-    for automaton in (watched, own):
-        bounds = automaton.stays.get(AT_RISK, ())
-        if len(bounds) != 1 or bounds[0].op != "<=":
-            return f"{automaton.name} has no deadline"
-        for edge in automaton.edges:
-            if edge.target == LOSE and (edge.source != AT_RISK or edge.sync is not None or not edge.controllable):
-                return f"{automaton.name} is lost otherwise than by its deadline"
-            if edge.assign or edge.guard.clocks or edge.sent is not None:
-                return f"{automaton.name} does more than watch"
-    if _deadline(watched).bound < _deadline(own).bound:
-        return f"{own.name} has a longer deadline"
-    return ""
-
-
-def _deadline(automaton: Automaton) -> ClockBound:
-    (bound,) = automaton.stays[AT_RISK]
-    return bound
-
-
-def _with_any(watched: Automaton, variables: AbstractSet[str]) -> Iterator[Edge]:
-    """The automaton's edges, where other variables may have any value: what tests them may happen, or not."""
-    for edge in watched.edges:
-        tests = tuple(c for c in edge.guard.integers if all(test.variable in variables for test in c))
-        yield replace(edge, guard=Guard(edge.guard.clocks, tests))
-        if len(tests) < len(edge.guard.integers):
-            yield Edge(edge.source, edge.source, sync=edge.sync)
-
-
-def kept_apart(strategy: Strategy, share: int) -> Sequence[str]:
-    """The automata that a share keeps and its blocks do not name, without those of objectives that watchers have in
-    their place. Requires the number of a share that names what it avoids."""
-    assert strategy.shares[share]
-    avoided = strategy.shares[share]
-    named = {name for n in strategy.numbers_of(share, avoided[0]) for name in strategy.blocks[n].state.names[0]}
-    kept = {name for name, _ in avoided} | named
-    watched = {watcher.objective for watcher in strategy.watchers if watcher.name in kept}
-    return tuple(dict.fromkeys(name for name, _ in avoided if name not in named | watched))
-
-
-def games_apart(share: StagePart, names: Sequence[str]) -> Iterator[StagePart]:
-    """A game for each of these automata, beside those that the share's blocks name. Requires automata of the share's
-    game; if the strategy wins all the games, and there is no fault, it wins that one."""
-    fault = _why_not_apart(share.strategy.blocks, [share.game.automaton(name) for name in names])
-    for name in names:
-        others = set(names) - {name}
-        kept = {automaton.name for automaton in share.game.automata} - others
-        game = part_of(share.game, kept)
-        wanted = replace(share.objective, bad=tuple(place for place in share.objective.bad if place[0] not in others))
-        fault = fault or why_it_matters(share.game, wanted, game, {each: set() for each in others})
-        blocks, numbers = _lifted(share.strategy.blocks, game, name, wanted.bad)
-        clocks = tuple(clock for clock in share.strategy.left_out_clocks if clock in game.clocks)
-        own = replace(share.strategy, blocks=blocks, left_out_clocks=clocks)
-        yield StagePart(share.stage, game, wanted, own, tuple(share.numbers[k] for k in numbers), fault)
-
-
-def _why_not_apart(blocks: Sequence[Block], automata: Sequence[Automaton]) -> str:
-    """Why a move of one of these automata may end a command of the blocks; "" if it cannot."""
-    own = {clock for automaton in automata for clock in automaton.clocks}
-    for block in blocks:
-        due = [zone for command in block.commands for zone in command.zones]
-        if any(bound.left in own or bound.right in own for zone in block.zones for bound in zone):
-            return "it compares clocks of what it keeps and does not name"
-        if len(block.commands) > 1 or not all(_is_before(wait, zone) for wait in block.wait for zone in due):
-            return "what it keeps and does not name may change while a command is on its way, and is not the last word"
-    return ""
-
-
-def _is_before(zone: Zone, other: Zone) -> bool:
-    """True if a clock is smaller in all of the zone than anywhere in the other one."""
-    for above in (bound for bound in zone if bound.right is None):
-        for below in (bound for bound in other if bound.left is None and bound.right == above.left):
-            if above.bound < -below.bound or (above.bound == -below.bound and (above.strict or below.strict)):
-                return True
-    return False
-
-
-def _lifted(
-    blocks: Sequence[Block], game: Network, name: str, bad: Sequence[Place]
-) -> Tuple[Tuple[Block, ...], Tuple[int, ...]]:
-    """The blocks for each location of this automaton of the game, but for those that are to be avoided, and for each
-    the number of the one that it comes from.
-
-    Where the automaton may receive a command in several ways, the command is none in its game.
-    """
-    place = next(k for k, automaton in enumerate(game.automata) if automaton.name == name)
-    own = game.automata[place]
-    found: List[Block] = []
-    numbers: List[int] = []
-    before = {automaton.name for automaton in game.automata[:place]}
-    for number, block in enumerate(blocks):
-        locations = block.state.locations
-        at = sum(each in before for each, _ in locations)
-        for location in (each.name for each in own.locations if (name, each.name) not in bad):
-            moved = block.with_locations((*locations[:at], (name, location), *locations[at:]))
-            commands = tuple(_heard(command, own, location, dict(block.state.values)) for command in block.commands)
-            found.append(replace(moved, commands=commands))
-            numbers.append(number)
-    return tuple(found), tuple(numbers)
-
-
-def _heard(command: Command, automaton: Automaton, location: str, values: Mapping[str, int]) -> Command:
-    """The command with the edges on which the automaton receives it there."""
-    sent = command.moves[0].edge.sent
-    there = (edge for edge in automaton.edges if edge.source == location and edge.received is not None)
-    received = (Move(automaton.name, edge) for edge in there if edge.received == sent and edge.guard.holds(values))
-    return replace(command, moves=(*command.moves, *received))

@@ -14,7 +14,8 @@ from typing import Collection, Dict, FrozenSet, Iterator, List, Mapping, Optiona
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT, verify
 from pursue_gen.proof.relaxed_reachability import Extent, is_controllers, live
-from pursue_gen.proof.stages import Known, after_stage, at_start, is_sure, stage_objective
+from pursue_gen.proof.stage_entry import Known, at_start
+from pursue_gen.proof.stages import after_stage, is_sure, stage_objective
 from pursue_gen.solving.found import Found, stats_of_all
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove

@@ -2,7 +2,7 @@
 
 Who visits what comes from `rounds`. A robot's round is a tour of the strategy (see `tga.tours`), and a share that names
 nobody but the robot and its tour: what the robot does next depends on nothing else, and the checker looks at each place
-alone (see `proof.shares`). So neither robots nor places multiply.
+alone (see `proof.apart`). So neither robots nor places multiply.
 
 A robot waits as long as its places allow (see `waits`). A tenth of the period is left in reserve.
 """

@@ -2,7 +2,7 @@
 
 Who has to be at a place in time, whoever else comes by, follows an automaton of its own: the one that the objective
 would have if its robots alone could keep it. That is at risk whenever the objective's is, and not shorter: who keeps it
-keeps the objective (see `proof.shares`). What others do for the objective changes nothing in it.
+keeps the objective (see `proof.watched`). What others do for the objective changes nothing in it.
 """
 
 from __future__ import annotations

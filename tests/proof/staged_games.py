@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.proof.relaxed_reachability import is_controllers
-from pursue_gen.proof.stages import Known, after_stage, at_start
+from pursue_gen.proof.stage_entry import Known, at_start
+from pursue_gen.proof.stages import after_stage
 from pursue_gen.synthesis.cone import cone_of_influence
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.solve import solve
