@@ -36,6 +36,9 @@ class Size:
 SMALL = Size(places=10, robots=3, people=2, promises=4)
 LARGE = Size(places=20, robots=5, people=4, promises=8)
 
+LABS: Dict[str, Tuple[Size, float, float]] = {"lab": (SMALL, 10.0, 0.97), "large lab": (LARGE, 30.0, 0.9)}
+"""Random lab scenarios: their size, processor seconds after which they are ended, and the part to be decided."""
+
 
 @dataclass(frozen=True)
 class Agent:

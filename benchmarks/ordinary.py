@@ -19,14 +19,12 @@ from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
 from benchmarks.command import Goal, command_measured, files_of, terminal
 from benchmarks.driving import driving_measured
-from benchmarks.lab_scenarios import LARGE, SMALL, Size, lab_scenario
+from benchmarks.lab_scenarios import LABS, lab_scenario
 from benchmarks.measure import Bounds, Row
+from benchmarks.synthesis import version, write
 
 MEMORY = 1024
 """MiB: what a command may take."""
-
-LABS: Dict[str, Tuple[Size, float, float]] = {"lab": (SMALL, 10.0, 0.97), "large lab": (LARGE, 30.0, 0.9)}
-"""Random lab scenarios: their size, processor seconds after which they are ended, and the part to be decided."""
 
 GOALS: Tuple[Goal, ...] = tuple(
     Goal(name, "default", seconds, size)
@@ -110,8 +108,6 @@ def _rows(given: argparse.Namespace) -> Iterator[Row]:
 def keep(folder: Path, rows: Sequence[Row], driving: Sequence[Row] = ()) -> None:
     """Writes the rows into the results of the benchmarks, in place of those of the same commands, each with the version
     that it is of; and the page again."""
-    from benchmarks.synthesis import version, write
-
     file = folder / "benchmarks" / "results.json"
     results: Dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
     now = {"date": f"{datetime.date.today()}", "version": version()}

@@ -6,8 +6,8 @@ import statistics
 from typing import Any, List, Mapping
 
 from benchmarks import command
+from benchmarks.lab_scenarios import LABS
 from benchmarks.measure import Row
-from benchmarks.ordinary import LABS
 from benchmarks.tables import DASH, markdown, number, seconds
 
 _NEAR = 1.2

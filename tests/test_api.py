@@ -22,7 +22,7 @@ import pytest
 
 import pursue_gen
 from pursue_gen import api
-from pursue_gen.api import requests, scenarios, solutions, uses
+from pursue_gen.api import scenarios, solutions
 from pursue_gen.language import scenario as language_scenario
 from tests.conftest import ROOT, thesis_scenario
 from tests.large_scenarios import many_walkers
@@ -39,7 +39,7 @@ def in_the_checkout(monkeypatch: pytest.MonkeyPatch) -> None:
 
 # Examples -------------------------------------------------------------------------------------------------------------
 
-PARTS = (requests, scenarios, solutions, uses)
+PARTS = (scenarios, solutions)
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 

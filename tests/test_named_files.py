@@ -92,7 +92,7 @@ READERS: Dict[str, Callable[[Path], object]] = {
     "a trusted key": trusted,
     "poses": lambda file: read_poses(file, ("a",)),
     "robots": read_robots,
-    "machines": lambda file: read_machines(file, ("observer",)),
+    "machines": lambda file: read_machines(file, ()),
     "a certificate": certificate,
     "data": lambda file: read_data(str(file)),
     "a trace": lambda file: player(file),

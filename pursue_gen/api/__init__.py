@@ -6,8 +6,7 @@ goes wrong is a PursueError with its findings (code, message, hint, place), of a
 Ctrl-C ends whatever is done. docs/api.md shows all of it at work. What a function needs is imported when it is called.
 """
 
-from pursue_gen.api.requests import request
-from pursue_gen.api.scenarios import as_text, as_uppaal, check, game, parse, read, read_game, settle
+from pursue_gen.api.scenarios import as_text, as_uppaal, check, game, parse, read, read_game, request, settle
 from pursue_gen.api.solutions import (
     Solved,
     SolvedGame,
@@ -16,13 +15,15 @@ from pursue_gen.api.solutions import (
     explain,
     problem_of,
     promises_of,
+    replan,
+    simulate,
     solve,
     solve_game,
     verdict_of,
     verify,
     verify_game,
+    write_workspace,
 )
-from pursue_gen.api.uses import replan, simulate, write_workspace
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, Span
 from pursue_gen.language import scenario
 from pursue_gen.language.scenario import *

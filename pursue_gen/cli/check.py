@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Dict, Iterable, List, Optional, Tuple
 import typer
 
 from pursue_gen.cli.console import ended, guarded, info, show, suggest
-from pursue_gen.cli.on_map import on_map
+from pursue_gen.cli.inputs import on_map
 from pursue_gen.cli.options import ROBOT, SPOT_DISTANCE
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, as_json, counted
 from pursue_gen.files import shell_quoted

@@ -41,8 +41,8 @@ def solve(
     been proven by a second, independent program. The exit status is 4 where the objective cannot be met.
     """
     from pursue_gen import api
+    from pursue_gen.cli.inputs import explained
     from pursue_gen.cli.progress import progress_line
-    from pursue_gen.cli.solution import explained
 
     printed, output = _plan_to(plan_, output, as_json_)
     start = request.options.limits.now()

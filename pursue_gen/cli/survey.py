@@ -86,7 +86,7 @@ def survey(
     _check_numbers(0.001, time_unit=time_unit, turning=turning, acceleration=acceleration, unit=unit)
     _check_packages()
     from pursue_gen.survey.make import Options
-    from pursue_gen.survey.times import Drive
+    from pursue_gen.survey.routes import Drive
     from pursue_gen.workspace.levels import read_levels
     from pursue_gen.workspace.robot_size import read_sizes
 

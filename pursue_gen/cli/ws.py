@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, List, Optional
 import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
-from pursue_gen.cli.on_map import placed_on
+from pursue_gen.cli.inputs import placed_on
 from pursue_gen.cli.options import EXPLAIN, MISSION, REQUEST, ROBOT, SCENARIO, SPOT_DISTANCE, choice, with_request
 from pursue_gen.files import shell_quoted
 
@@ -49,8 +49,7 @@ def ws(
     The folder is printed on stdout.
     """
     from pursue_gen import api
-    from pursue_gen.cli.inputs import scenario_from
-    from pursue_gen.cli.solution import solve_and_print
+    from pursue_gen.cli.inputs import scenario_from, solve_and_print
     from pursue_gen.workspace.make import Extras
     from pursue_gen.workspace.map_spots import spare_spots
     from pursue_gen.workspace.robot_size import read_sizes, sizes_of

@@ -13,17 +13,17 @@ from typing import Any, Dict, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span
 from pursue_gen.explanation.number_changes import Repair
+from pursue_gen.explanation.part import game_of
 from pursue_gen.explanation.repairs import repairs
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.times import like, written_time
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.cut_off import lost_to_a_stay
 from pursue_gen.solving.decided import guessed, strategy_of
-from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.strategy import Strategy
-from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.thresholds import narrowed
 
@@ -38,6 +38,9 @@ _FOR_GUESSES, _FOR_LIMITS = 0.1, 0.1
 """The part of the budget for strategies in shares or by a policy, where the exact game is too large; of what is left of
 it, that for a later deadline, which people ask for first. Measured on a barn with a battery, and on an usher in a
 cinema."""
+
+_Game = Tuple[Network, Objective, Fraction]
+"""A network, what is wanted in it, and the reaction."""
 
 _PROBES = (11, 19, 31, 63, 127, 255)
 """Where a search for a number that wins looks before the end of a long list: large ones take longer. Not measured."""
@@ -164,9 +167,7 @@ def _least(repair: Repair, scenario: Scenario, rules: Rules, budget: Budget) -> 
     """
 
     def strategy_of(k: int) -> Optional[Strategy]:
-        changed = repair.make(repair.values[k])
-        what = (changed, rules) if isinstance(changed, Scenario) else (scenario, changed)
-        return _strategy(*what, budget, repair.what in _WHO_PREVENTS)
+        return _strategy(_game(repair, k, scenario, rules), budget, repair.what in _WHO_PREVENTS)
 
     last = len(repair.values) - 1
     win: Optional[_Win] = None
@@ -199,9 +200,7 @@ def _guess(repair: Repair, scenario: Scenario, rules: Rules, budget: Budget, sha
 
     def wins(k: int) -> bool:
         with suppress(PursueError):
-            changed = repair.make(repair.values[k])
-            game = _game(*((changed, rules) if isinstance(changed, Scenario) else (scenario, changed)))
-            strategy = guessed(budget, *game, share, share)
+            strategy = guessed(budget, *_game(repair, k, scenario, rules), share, share)
             known.update({} if strategy is None else {k: strategy})
         return k in known
 
@@ -231,15 +230,17 @@ def _price(change: Change) -> Tuple[int, Fraction]:
     return (0, large / small) if small else (1, large)
 
 
-def _strategy(scenario: Scenario, rules: Rules, budget: Budget, by_guess: bool) -> Optional[Strategy]:
+def _strategy(game: _Game, budget: Budget, by_guess: bool) -> Optional[Strategy]:
     """A strategy that wins the changed game, None where it is lost. Raises LimitHit. `by_guess`: also one in shares, or
     by a policy."""
-    network, objective, reaction = _game(scenario, rules)
-    if lost_to_a_stay(network, objective) is not None:
+    if lost_to_a_stay(*game[:2]) is not None:
         return None
-    verdict = (budget, network, objective, reaction, _SHARE)
+    verdict = (budget, *game, _SHARE)
     return strategy_of(*verdict, _SHARED) if by_guess else verdict_of(*verdict).strategy
 
 
-def _game(scenario: Scenario, rules: Rules) -> Tuple[Network, Objective, Fraction]:
-    return played(translate(scenario), rules), scenario_objective(scenario), rules.reaction
+def _game(repair: Repair, k: int, scenario: Scenario, rules: Rules) -> _Game:
+    """The game with this value of what is changed."""
+    changed = repair.make(repair.values[k])
+    some, how = (changed, rules) if isinstance(changed, Scenario) else (scenario, changed)
+    return (*game_of(some, how), how.reaction)

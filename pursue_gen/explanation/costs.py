@@ -1,7 +1,7 @@
 """What makes a scenario too large to be decided, and what is decided of it.
 
-All is solved with more time (see `longer`). Of several objectives each is solved alone, then several together (see
-`decided`), then all in cheaper forms (see `cheaper`). Then parts are left out, each alone, and where there is one
+All is solved with more time (see `offers`). Of several objectives each is solved alone, then several together (see
+`decided`), then all in cheaper forms (see `offers`). Then parts are left out, each alone, and where there is one
 objective, several together. Each smaller scenario is solved with a share of a fixed budget of work, the one that seems
 smallest first.
 """
@@ -15,19 +15,17 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.ablations import Part, without_each
-from pursue_gen.explanation.cheaper import Form, cheaper
 from pursue_gen.explanation.decided import Decided, decided, texts
 from pursue_gen.explanation.decided import as_json as decided_json
-from pursue_gen.explanation.longer import Longer, longer
-from pursue_gen.explanation.part import rules_for
+from pursue_gen.explanation.offers import Form, Longer, cheaper, longer
+from pursue_gen.explanation.part import game_of
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import LimitHit
-from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.rules import Rules
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.cone import cone_of_influence
 from pursue_gen.synthesis.enforced import enforced
 from pursue_gen.synthesis.limits import EXPLAINING, NO_LIMITS, Limits, Listener, memory_in_use
-from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.thresholds import narrowed
 
@@ -102,7 +100,7 @@ def costs(
     more: Tuple[Longer, ...] = ()
     with suppress(LimitHit), enforced(few, EXPLAINING):
         if option:
-            cost = _cost((option,), _game(scenario, rules), rules, budget, _OPTION)
+            cost = _cost((option,), game_of(scenario, rules), rules, budget, _OPTION)
             if cost is not None:
                 return Costs((cost,), ())
         more = longer(scenario, rules, Limits(_LONGER * seconds, memory), progress)
@@ -152,12 +150,12 @@ def as_json(found: Costs) -> Dict[str, Any]:
 def _alone(scenario: Scenario, rules: Rules, budget: Budget, objectives: bool) -> Tuple[List[Cost], List[Part]]:
     """What is decided without one part that matters, and the parts without which it is not; the smallest game first."""
     parts = list(without_each(scenario, objectives))
-    sizes, whole = [_size(*_game(smaller, rules)) for _, smaller in parts], _size(*_game(scenario, rules))
+    sizes, whole = [_size(*game_of(smaller, rules)) for _, smaller in parts], _size(*game_of(scenario, rules))
     lesser = [parts[k] for k in sorted(range(len(parts)), key=lambda k: sizes[k]) if sizes[k] < whole]
     found: List[Cost] = []
     undecided: List[Part] = []
     for k, (part, smaller) in enumerate(lesser):
-        cost = _cost((part.name,), _game(smaller, rules), rules, budget, 1 / (len(lesser) - k))
+        cost = _cost((part.name,), game_of(smaller, rules), rules, budget, 1 / (len(lesser) - k))
         if cost is None:
             undecided.append(part)
         else:
@@ -172,7 +170,7 @@ def _together(scenario: Scenario, parts: Sequence[Part], rules: Rules, budget: B
 
     def decided(k: int) -> bool:
         without, smaller = lesser[k]
-        cost = _cost(without, _game(smaller, rules), rules, budget, _EACH)
+        cost = _cost(without, game_of(smaller, rules), rules, budget, _EACH)
         known.update({} if cost is None else {k: cost})
         return cost is not None
 
@@ -193,8 +191,7 @@ def _without_several(scenario: Scenario, parts: Sequence[Part]) -> List[Tuple[Tu
     return found[1:]
 
 
-def _game(scenario: Scenario, rules: Rules) -> _Game:
-    return played(translate(scenario), rules_for(scenario, rules)), scenario_objective(scenario)
+
 
 
 def _size(network: Network, objective: Objective) -> int:

@@ -10,18 +10,19 @@ from dataclasses import dataclass
 from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Span, lines_in_words
-from pursue_gen.explanation.part import part_of_scenario, rules_for
+from pursue_gen.explanation.part import game_of, part_of_scenario
 from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.options import SolveOptions
-from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.rules import DEFAULT, Rules
 from pursue_gen.solving.shares import can_be_shared, won_in_shares
 from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.solving.vacuity import idle
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.cone import cone_of_influence
-from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.synthesis.game import Game, initial_state, is_bad, joint_moves
 from pursue_gen.tga.network import Network
 
 _ALONE, _SET = 0.5, 0.25
@@ -124,9 +125,7 @@ def _outcome(one: Known) -> str:
 def _verdict(
     scenario: Scenario, objectives: Sequence[StatedObjective], rules: Rules, budget: Budget, share: float
 ) -> Tuple[bool, int]:
-    part = part_of_scenario(scenario, objectives, rules)
-    rules = rules_for(part, rules)
-    network, objective = played(translate(part), rules), scenario_objective(part)
+    network, objective = game_of(part_of_scenario(scenario, objectives, rules), rules)
     for game in _with_one_robot(network):
         try:
             verdict = budget.verdict(cone_of_influence(game, objective), objective, rules.reaction, share * _ONE_ROBOT)
@@ -158,3 +157,51 @@ def each_statement(scenario: Scenario) -> Iterator[Tuple[str, _Statement]]:
         found.setdefault(objective.span, []).append(objective)
     for some in found.values():
         yield some[0].statement(some).text, tuple(some)
+
+
+_STATES, _OF_ALL = 2_000, 16_000
+"""So many states are counted of a statement, and of all: a quarter of a second. Measured on lab scenarios."""
+
+
+@dataclass(frozen=True)
+class Size:
+    """A statement, and what it costs: how many discrete states its own game has, which those of others multiply;
+    `more`: that many, and more."""
+
+    span: Span
+    states: int
+    more: bool
+
+    def in_words(self) -> str:
+        """What stands beside the statement."""
+        return f"{'over ' if self.more else ''}{self.states:,} states"
+
+
+def sizes(scenario: Scenario) -> Tuple[Size, ...]:
+    """The sizes of the objectives' statements in the default game, in their order, as far as so many states tell. Times
+    are left aside, so a game has no more states than are counted here."""
+    found: List[Size] = []
+    left = _OF_ALL
+    for _, statement in each_statement(scenario):
+        if left < _STATES:
+            break
+        network, objective = game_of(part_of_scenario(scenario, statement, DEFAULT), DEFAULT)
+        states = _count(compile_game(cone_of_influence(network, objective), objective))
+        found.append(Size(statement[0].span, states, states == _STATES))
+        left -= states
+    return tuple(found)
+
+
+def _count(game: Game) -> int:
+    """The discrete states that moves lead to, whatever the clocks are; _STATES where there are that many or more."""
+    start = initial_state(game)
+    seen, waiting = {start}, [start]
+    while waiting:
+        state = waiting.pop()
+        for move in () if is_bad(game, state) else joint_moves(game, state):
+            if move.target not in seen:
+                if len(seen) == _STATES:
+                    return _STATES
+                seen.add(move.target)
+                waiting.append(move.target)
+    return len(seen)

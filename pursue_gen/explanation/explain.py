@@ -16,21 +16,27 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.changes import Change, findings
 from pursue_gen.explanation.endless import Endless, endless
-from pursue_gen.explanation.part import part_of_scenario, rules_for, statements_of, with_one_robot
+from pursue_gen.explanation.part import (
+    Conflict,
+    conflict,
+    game_of,
+    part_of_scenario,
+    rules_for,
+    statements_of,
+    with_one_robot,
+)
 from pursue_gen.explanation.play import Play, counter_plays
 from pursue_gen.explanation.play_lines import Attempt, TimedLine, attempt, describe
-from pursue_gen.explanation.together import Conflict, conflict
 from pursue_gen.language.numbers import time_text
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.times import unit_name, words_for
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.lost_promises import lost_to_one_walk, quoted
 from pursue_gen.solving.one_robot import lost_game
-from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import EXPLAINING, NO_LIMITS, Limits, Listener
-from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network
 
 WORK, STATES = 60_000_000, 50_000
@@ -121,7 +127,7 @@ def _explained(
     if conflicting and len(scenario.objectives) > 1:
         together = conflict(scenario, rules, budget.split(_FOR_CONFLICT))
     found = findings(scenario, rules, budget.split(_FOR_CHANGES))
-    network, objective = played(translate(scenario), rules), scenario_objective(scenario)
+    network, objective = game_of(scenario, rules)
     repeating: Tuple[Endless, ...] = ()
     plays: List[Play] = []
     with suppress(LimitHit):
@@ -148,8 +154,7 @@ def _explained(
 def _is_small(scenario: Scenario, rules: Rules, budget: Budget) -> bool:
     """True if the whole scenario is decided with little work, and so can be changed in many ways."""
     try:
-        network, objective = played(translate(scenario), rules), scenario_objective(scenario)
-        verdict_of(budget.split(_FOR_WHOLE, _FEW), network, objective, rules.reaction)
+        verdict_of(budget.split(_FOR_WHOLE, _FEW), *game_of(scenario, rules), rules.reaction)
     except LimitHit:
         return False
     return True

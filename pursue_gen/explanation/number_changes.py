@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from math import ceil, floor
-from typing import Any, Callable, Iterator, Optional, Sequence, Union
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Union
 
-from pursue_gen.diagnostics import Span
+from pursue_gen.diagnostics import Span, listed
+from pursue_gen.language.assumption_checks import setting_of
+from pursue_gen.language.assumptions import KINDS, Assumption
 from pursue_gen.language.loads import MOST_LOADS, Carrier
 from pursue_gen.language.numbers import Number, Window, whole_above, whole_below
 from pursue_gen.language.scenario import Battery, Event, Scenario, Travel
 from pursue_gen.language.statements.event import MOST_TIMES
-from pursue_gen.language.times import like, window_text
+from pursue_gen.language.times import like, window_text, written_time
 from pursue_gen.solving.rules import Rules
 
 SLOWER = 32
@@ -138,3 +140,90 @@ def load_changes(scenario: Scenario, carrier: Carrier) -> Iterator[Repair]:
             lambda k: scenario.with_instead(agent, replace(agent, carries=k)),
             lambda k: f"{agent.shown} carries {k} instead of {room}", agent.span,
         )  # fmt: skip
+
+
+def as_written(scenario: Scenario, repairs: Iterable[Repair]) -> Iterator[Repair]:
+    """The repairs, with one in place of those of several members that are the same change of the text; those that
+    differ speak of their member."""
+    several: Dict[object, List[Repair]] = {}
+    for number, repair in enumerate(repairs):
+        key: object = number
+        if repair.span is not None and repair.span.member:
+            key = (repair.what, repair.span.written, str(repair.before), tuple(map(str, repair.values)))
+        several.setdefault(key, []).append(repair)
+    for some in several.values():
+        yield _of_all(scenario, some) if len(some) > 1 else some[0]
+
+
+def _of_all(scenario: Scenario, some: Sequence[Repair]) -> Repair:
+    """One change of all members."""
+    first, *_ = some
+    assert first.span is not None, "they are of one statement"
+    variables = listed(part.split(" is ")[0] for part in first.span.member.split(", "))
+    behind = f", and so for each other {variables}"
+
+    def make(value: Any) -> Union[Scenario, Rules]:
+        changed = [repair.make(value) for repair in some]
+        return _together(scenario, [each for each in changed if isinstance(each, Scenario)])
+
+    return replace(
+        first, name=", ".join(dict.fromkeys(repair.name for repair in some)), label=first.label + behind, make=make,
+        say=lambda value: first.say(value) + behind, span=first.span.written,
+    )  # fmt: skip
+
+
+def _together(scenario: Scenario, changed: Sequence[Scenario]) -> Scenario:
+    """The scenario with all changes: of its parts each scenario has another one, or lacks some, or has more."""
+    parts: Dict[str, Any] = {}
+    for field in fields(scenario):
+        before, after = getattr(scenario, field.name), [getattr(each, field.name) for each in changed]
+        if isinstance(before, tuple) and any(each != before for each in after):
+            parts[field.name] = tuple(_merged(before, after))
+    return replace(scenario, **parts)
+
+
+def _merged(before: Sequence[object], after: Sequence[Sequence[object]]) -> Iterator[object]:
+    if any(len(each) != len(before) for each in after):
+        yield from (part for part in before if all(part in each for each in after))
+        yield from dict.fromkeys(part for each in after for part in each if part not in before)
+    else:
+        yield from (next((new for new in row if new != part), part) for part, *row in zip(before, *after))
+
+
+_CONTRADICTIONS = ("PML264", "PML442")
+"""Findings about two assumptions of which one may keep an agent from what the other one says that it does."""
+
+
+def assumption_changes(scenario: Scenario, longest: Number) -> Iterator[Repair]:
+    """Assumptions with another number, and those that may be missing; times are up to `longest` time units."""
+    setting = setting_of(scenario)
+    for known in scenario.assumptions:
+        stronger = known.stronger(longest, setting.shortest_stay)
+        if stronger:
+            before = known.known_number
+            label, instead = f"more than {known.text}", f" instead of {written_time(before)}"
+            yield _change(scenario, known, stronger, label, before, instead)
+    for kind in KINDS.values():
+        for one, values in kind.missing(setting, longest):
+            with_it = replace(scenario, assumptions=(*scenario.assumptions, one))
+            if not _contradicts(with_it):
+                yield _change(with_it, one, values, one.subject)
+
+
+def _contradicts(scenario: Scenario) -> bool:
+    """True if one of its assumptions leaves no room for another one."""
+    setting = setting_of(scenario)
+    found = (finding for each in scenario.assumptions for finding in each.check_in(setting))
+    return any(finding.code in _CONTRADICTIONS for finding in found)
+
+
+def _change(
+    scenario: Scenario, one: Assumption, values: Sequence[int], label: str, before: Number = 0, instead: str = ""
+) -> Repair:
+    """One of these numbers in an assumption of the scenario."""
+    named = list(one.names())
+    about = next((ref.name for kind, ref in named if kind == "agent"), named[0][1].name)
+    return Repair(
+        "assumption", about, label, before, values, lambda k: scenario.with_instead(one, one.with_number(k)),
+        lambda k: f"{one.with_number(k).text}{instead}", one.span,
+    )  # fmt: skip

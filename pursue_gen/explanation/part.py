@@ -1,17 +1,23 @@
-"""The part of a scenario that decides whether some of its objectives can be promised."""
+"""The part of a scenario that decides whether some of its objectives can be promised; which of them exclude each other:
+found by solving with fewer of them."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Collection, FrozenSet, Sequence, Set, Tuple
+from dataclasses import dataclass, replace
+from typing import Collection, FrozenSet, List, Optional, Sequence, Set, Tuple
 
+from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.ablations import without_agent
 from pursue_gen.language.names import events_used
 from pursue_gen.language.scenario import Rule, Scenario, StatedObjective
+from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.one_robot import robot_alone
 from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.without_pauses import verdict_of
+from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.cone import cone_of_influence
 from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.objectives import stated
 
 
@@ -31,8 +37,7 @@ def part_of_scenario(scenario: Scenario, objectives: Sequence[StatedObjective], 
     """The scenario with these objectives alone, without the events and agents that cannot matter to them: it can be
     won if and only if they can be promised."""
     part = _without_events(with_objectives(scenario, objectives))
-    network = played(translate(part), rules_for(part, rules))
-    matter = {automaton.name for automaton in cone_of_influence(network, scenario_objective(part)).automata}
+    matter = {automaton.name for automaton in cone_of_influence(*game_of(part, rules)).automata}
     for agent in part.agents:
         if agent.name not in matter:
             part = without_agent(part, agent.name) or part
@@ -42,7 +47,7 @@ def part_of_scenario(scenario: Scenario, objectives: Sequence[StatedObjective], 
 def with_one_robot(scenario: Scenario, rules: Rules) -> Scenario:
     """The scenario in which all robots stand still but the one that alone can do something about what is wanted; the
     scenario itself where there is none."""
-    robot = robot_alone(played(translate(scenario), rules_for(scenario, rules)), scenario_objective(scenario))
+    robot = robot_alone(*game_of(scenario, rules))
     if robot is None:
         return scenario
     agents = (
@@ -50,6 +55,12 @@ def with_one_robot(scenario: Scenario, rules: Rules) -> Scenario:
         for agent in scenario.agents
     )
     return replace(scenario, agents=tuple(agents))
+
+
+def game_of(scenario: Scenario, rules: Rules) -> Tuple[Network, Objective]:
+    """The network of a scenario as it is played under the rules, as far as they are about its agents, and its
+    objective."""
+    return played(translate(scenario), rules_for(scenario, rules)), scenario_objective(scenario)
 
 
 def rules_for(scenario: Scenario, rules: Rules) -> Rules:
@@ -93,3 +104,56 @@ def _pastimes(scenario: Scenario) -> Set[str]:
 
 def _named(rule: Rule) -> FrozenSet[str]:
     return frozenset(ref.name for ref in rule.events)
+
+
+_SHARE = 0.5
+"""The part of what is left of the budget that one game may take. Measured on the third ecobot."""
+
+
+@dataclass(frozen=True)
+class Conflict:
+    """Objectives that cannot be promised together. `least`: without any one of them the others of these can."""
+
+    objectives: Tuple[StatedObjective, ...]
+    least: bool
+    of: int
+
+    def in_words(self) -> str:
+        """A sentence or two."""
+        texts = [f"'{objective.full_text}'" for objective in self.objectives]
+        if len(texts) == 1:
+            return f"{texts[0]} cannot be promised, even as the only objective."
+        if self.least and len(texts) == self.of == 2:
+            return f"Of {listed(texts)} each alone can be promised, both together cannot."
+        rest = " Without any one of them the others of these can." if self.least else ""
+        return f"{listed(texts)} cannot be promised together.{rest}"
+
+
+def conflict(scenario: Scenario, rules: Rules, budget: Budget) -> Optional[Conflict]:
+    """As few objectives of a lost scenario as still cannot be promised together; None where it has one alone.
+
+    What must always hold is left out first: without anything to reach it would have to hold for ever.
+    """
+    statements = scenario.statements
+    if len(statements) < 2:
+        return None
+    kept: List[StatedObjective] = list(scenario.objectives)
+    least = True
+    for statement in statements:
+        fewer = [other for other in kept if not any(other is one for one in statement)]
+        won = _won(scenario, fewer, rules, budget) if fewer else True
+        if won is False:
+            kept = fewer
+        least = least and won is not None
+    # Of a patrol in order the first place stands for all of them: they have one text.
+    firsts = tuple(statement[0] for statement in statements if any(statement[0] is one for one in kept))
+    return Conflict(firsts, least, len(statements))
+
+
+def _won(scenario: Scenario, objectives: List[StatedObjective], rules: Rules, budget: Budget) -> Optional[bool]:
+    """Whether these alone can be promised; None: not decided within the budget."""
+    try:
+        game = game_of(with_objectives(scenario, objectives), rules)
+        return verdict_of(budget, *game, rules.reaction, _SHARE).won
+    except LimitHit:
+        return None

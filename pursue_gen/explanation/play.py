@@ -12,11 +12,20 @@ from fractions import Fraction
 from typing import Dict, FrozenSet, Iterator, List, Optional, Sequence, Set, Tuple
 
 from pursue_gen.explanation.endless import may_repeat
-from pursue_gen.explanation.policy import COARSE, Choice, Controller, Window, longest, moments, window
-from pursue_gen.explanation.position import Position, PositionSolver, won_against_few
+from pursue_gen.explanation.policy import (
+    COARSE,
+    Choice,
+    Controller,
+    Windows,
+    is_driven,
+    longest,
+    moments,
+    preferred,
+    window,
+)
+from pursue_gen.explanation.position import Position, PositionSolver, won_from
 from pursue_gen.language.symbols import Role
 from pursue_gen.outcomes import LimitHit
-from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import Game, JointMove, State, initial_state, is_bad, is_goal, joint_moves
@@ -118,7 +127,7 @@ def _beginnings(main: Play) -> Iterator[Tuple[int, ...]]:
 def _lost_to_few(network: Network, objective: Objective, reaction: Fraction, budget: Budget) -> bool:
     """True if the environment is known to win where each agent that rests between events does no more than one."""
     try:
-        return bool(pauses(network)) and not won_against_few(budget, network, objective, reaction, _FOR_FEW)
+        return bool(pauses(network)) and not won_from(budget, network, objective, reaction, True, _FOR_FEW)
     except LimitHit:
         return False
 
@@ -136,21 +145,13 @@ def _spared(network: Network, objective: Objective, reaction: Fraction, budget: 
         groups = [starts] + [[e for e in free if e.sync == s] for s in {e.sync: 0 for e in free if e not in starts}]
         for group in groups:
             fewer = _without(network, automaton.name, group)
-            won = won_against_few if few else _won
-            if group and not won(budget, fewer, objective, reaction):
+            if group and not won_from(budget, fewer, objective, reaction, few):
                 network = fewer
     return network
 
 
-def _won(budget: Budget, network: Network, objective: Objective, reaction: Fraction) -> bool:
-    return verdict_of(budget, network, objective, reaction).won
-
-
 def _without(network: Network, name: str, edges: Sequence[Edge]) -> Network:
-    automata = (
-        replace(a, edges=tuple(e for e in a.edges if e not in edges)) if a.name == name else a for a in network.automata
-    )
-    return replace(network, automata=tuple(automata))
+    return network.with_each(lambda a: a.with_edges(e for e in a.edges if e not in edges) if a.name == name else a)
 
 
 class _CounterPlayer:
@@ -272,9 +273,7 @@ class _CounterPlayer:
         late = [pair for pair in late if not is_bad(self._game, pair[0].target) and not self._in_vain(here, *pair)]
         return late[0] if late else None
 
-    def _answer(
-        self, here: Position, theirs: Sequence[Tuple[JointMove, Window]], move: JointMove, delay: Fraction
-    ) -> Optional[Choice]:
+    def _answer(self, here: Position, theirs: Windows, move: JointMove, delay: Fraction) -> Optional[Choice]:
         """The controller has decided for a move: it takes effect, at once or late, or the environment is faster."""
         open_ = window(self._game, here, move)
         for late in (Fraction(0), self._reaction):
@@ -288,11 +287,11 @@ class _CounterPlayer:
                     return found
         return None
 
-    def _unhurried(self, here: Position, theirs: Sequence[Tuple[JointMove, Window]]) -> Optional[Choice]:
+    def _unhurried(self, here: Position, theirs: Windows) -> Optional[Choice]:
         """The controller waits: the environment does what it must, else nothing if that is enough, else something."""
         room = longest(self._game, here)
-        driven = [pair for pair in theirs if self._is_driven(here, pair[0])]
-        for delay, move in sorted(self._preferred(driven), key=lambda pair: pair[0]):
+        driven = [pair for pair in theirs if is_driven(self._game, here, pair[0])]
+        for move, delay in preferred(driven, self._robots):
             if self._leaves_lost(here, move, delay):
                 return move, delay
         if self._horizon is None if room is None else bool(self._overdue(here, room)):
@@ -304,19 +303,7 @@ class _CounterPlayer:
                     return found
         return None
 
-    def _preferred(self, driven: Sequence[Tuple[JointMove, Window]]) -> Iterator[Tuple[Fraction, JointMove]]:
-        """Robots end as late as they may, others as soon as they can."""
-        for move, open_ in driven:
-            late = open_.latest() if move.owner in self._robots else None
-            delay = open_.earliest() if late is None else late
-            if delay is not None:
-                yield delay, move
-
-    def _is_driven(self, here: Position, move: JointMove) -> bool:
-        bounds = self._game.automata[move.owner].invariants[here.state.locations[move.owner]]
-        return bool(bounds) and self._game.origins[move.edges[0]].is_end
-
-    def _at(self, here: Position, theirs: Sequence[Tuple[JointMove, Window]], delay: Fraction) -> Optional[Choice]:
+    def _at(self, here: Position, theirs: Windows, delay: Fraction) -> Optional[Choice]:
         # What is new first, and nothing that takes no time and leads nowhere.
         for move, open_ in sorted(theirs, key=lambda pair: pair[0].target in self._been):
             if open_.holds(delay) and not self._in_vain(here, move, delay) and self._leaves_lost(here, move, delay):

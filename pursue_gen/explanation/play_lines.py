@@ -14,7 +14,7 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role
 from pursue_gen.language.times import moment
 from pursue_gen.synthesis.game import joint_moves
-from pursue_gen.tga.awaited import who_awaited
+from pursue_gen.tga.assumptions import who_awaited
 from pursue_gen.tga.objectives import stated
 from pursue_gen.vocabulary.agents import deed
 from pursue_gen.vocabulary.losses import loss

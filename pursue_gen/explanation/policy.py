@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import AbstractSet, Callable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
+from typing import AbstractSet, Callable, Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
 from pursue_gen.explanation.position import Position
 from pursue_gen.language import network_names as names
-from pursue_gen.synthesis.game import Game, JointMove, State, invariant
+from pursue_gen.synthesis.game import Bound, Game, JointMove, State, invariant
 from pursue_gen.synthesis.lookup import blocks_of, facts_of
 from pursue_gen.synthesis.relaxed import RelaxedPlanner
 from pursue_gen.synthesis.strategy import Block, Strategy, Zone
@@ -75,6 +75,10 @@ class Window:
         return self.high if self.high is not None and self.holds(self.high) else None
 
 
+Windows = Sequence[Tuple[JointMove, Window]]
+"""Moves with the delays after which they can be made."""
+
+
 def longest(game: Game, here: Position) -> Optional[Fraction]:
     """How long time may pass in a position; None: for ever."""
     rooms = [game.time(bound) - here.clocks[i - 1] for i, _, bound in invariant(game, here.state)]
@@ -84,13 +88,35 @@ def longest(game: Game, here: Position) -> Optional[Fraction]:
 def window(game: Game, here: Position, move: JointMove) -> Window:
     """The delays after which the move can be made."""
     entered = [bound for bound in invariant(game, move.target) if bound[0] not in move.resets]
+    return within(game, here, (*invariant(game, here.state), *move.bounds, *entered))
+
+
+def within(game: Game, here: Position, bounds: Iterable[Bound]) -> Window:
+    """The delays after which all these bounds hold, each of one clock."""
     result = Window()
-    for i, j, bound in (*invariant(game, here.state), *move.bounds, *entered):
+    for i, j, bound in bounds:
         if j == 0:
             result = result.at_most(game.time(bound) - here.clocks[i - 1], is_strict(bound))
         else:
             result = result.at_least(-game.time(bound) - here.clocks[j - 1], is_strict(bound))
     return result
+
+
+def is_driven(game: Game, here: Position, move: JointMove) -> bool:
+    """True for the end of a movement or an action that has to come in time."""
+    bounds = game.automata[move.owner].invariants[here.state.locations[move.owner]]
+    return bool(bounds) and game.origins[move.edges[0]].is_end
+
+
+def preferred(driven: Windows, robots: AbstractSet[int], grain: Fraction = COARSE) -> List[Choice]:
+    """When each of these moves is made, in the order of time: robots end as late as they may, others as soon as they
+    can."""
+    found: List[Choice] = []
+    for move, open_ in driven:
+        late = open_.latest() if move.owner in robots else None
+        delay = open_.earliest(grain) if late is None else late
+        found += [] if delay is None else [(move, delay)]
+    return sorted(found, key=lambda choice: choice[1])
 
 
 class Controller:
@@ -115,10 +141,9 @@ class Controller:
         return self._planned(here, windows)
 
     def _knows(self, block: Block, here: Position) -> bool:
-        zones = [*block.wait, *(zone for command in block.commands for zone in command.zones)]
-        return any(span is not None and span.holds(Fraction(0)) for span in map(self._span(here), zones))
+        return any(span is not None and span.holds(Fraction(0)) for span in map(self._span(here), block.zones))
 
-    def _advised(self, block: Block, here: Position, windows: Sequence[Tuple[JointMove, Window]]) -> Optional[Choice]:
+    def _advised(self, block: Block, here: Position, windows: Windows) -> Optional[Choice]:
         choices: List[Choice] = []
         named = {name for name, _ in block.state.locations}
         for command in block.commands:
@@ -132,7 +157,7 @@ class Controller:
                         choices.append((move, delay))
         return min(choices, key=lambda choice: choice[1], default=None)
 
-    def _planned(self, here: Position, windows: Sequence[Tuple[JointMove, Window]]) -> Optional[Choice]:
+    def _planned(self, here: Position, windows: Windows) -> Optional[Choice]:
         new = [(move, open_) for move, open_ in windows if move.target not in self._been]
         # What is due now comes before what may come to be due.
         urgent = sorted(self._planners, key=lambda planner: planner.state(here.state) != here.state)
@@ -189,7 +214,7 @@ def _key(automaton: str, edge: Edge) -> _Key:
     return automaton, edge.source, edge.target, str(edge.sync)
 
 
-def moments(windows: Sequence[Tuple[JointMove, Window]], grain: Fraction) -> Iterator[Fraction]:
+def moments(windows: Windows, grain: Fraction) -> Iterator[Fraction]:
     """The first and last moments of the windows."""
     for _, open_ in windows:
         for moment in (open_.earliest(grain), open_.latest()):

@@ -82,10 +82,8 @@ class PositionSolver:
                 clocks = (*clocks, elapsed)
             scale = common_denominator(clocks)
             begun = beginning_at(scaled(network, scale), position.state, [int(v * scale) for v in clocks])
-            game = self.budget, begun, self._objective, self._reaction * scale
-            self._known[key] = not (won_against_few(*game) if self._few else verdict_of(*game).won)
+            self._known[key] = not won_from(self.budget, begun, self._objective, self._reaction * scale, self._few)
         return self._known[key]
-
 
     def horizon(self, start: Position, most: Optional[int] = None) -> Optional[int]:
         """About the least time in which the environment can do its work from a position that is lost, so that a play
@@ -94,34 +92,32 @@ class PositionSolver:
         return None if found is None else found + 1
 
 
-def won_against_few(
-    budget: Budget, network: Network, objective: Objective, reaction: Fraction, share: float = 1.0
+def won_from(
+    budget: Budget, network: Network, objective: Objective, reaction: Fraction, few: bool, share: float = 1.0
 ) -> bool:
-    """True if the game is won where each agent that rests between events does no more than one. Raises LimitHit."""
-    return budget.verdict(acting_at_most(network, objective, 1), objective, reaction, share).won
+    """True if the game is won; `few`: where each agent that rests between events does no more than one. Raises
+    LimitHit."""
+    if few:
+        return budget.verdict(acting_at_most(network, objective, 1), objective, reaction, share).won
+    return verdict_of(budget, network, objective, reaction).won
 
 
 def with_horizon(network: Network, horizon: int) -> Network:
     """The network with a last clock, never reset; at the horizon the game ends, which no move delays."""
     over = Location(_OVER)
-    automata = tuple(
-        replace(
-            automaton,
-            locations=(*automaton.locations, over),
-            edges=automaton.edges
-            + tuple(Edge(place.name, _OVER, sync=Sync(_OVER, sends=False)) for place in automaton.locations),
-        )
-        for automaton in network.automata
-    )
+    ends = Sync(_OVER, sends=False)
+
+    def ending(automaton: Automaton) -> Automaton:
+        edges = (Edge(place.name, _OVER, sync=ends) for place in automaton.locations)
+        return replace(automaton, locations=(*automaton.locations, over), edges=(*automaton.edges, *edges))
+
     then = Guard((ClockBound(_HORIZON, ">=", horizon),))
     end = Edge(_HORIZON, _OVER, then, Sync(_OVER, sends=True), controllable=False)
     until = Location(_HORIZON, (ClockBound(_HORIZON, "<=", horizon),))
     referee = Automaton(_HORIZON, (until, over), _HORIZON, (end,))
+    clocks, channels = (*network.clocks, _HORIZON), (*network.channels, _OVER)
     return replace(
-        network,
-        clocks=(*network.clocks, _HORIZON),
-        channels=(*network.channels, _OVER),
-        automata=(*automata, referee),
+        network, clocks=clocks, channels=channels, automata=(*map(ending, network.automata), referee)
     )
 
 
@@ -132,22 +128,13 @@ def beginning_at(network: Network, state: State, clocks: Sequence[int]) -> Netwo
     automata: List[Automaton] = []
     for k, automaton in enumerate(network.automata):
         here = automaton.locations[state.locations[k]].name if k < len(state.locations) else automaton.initial
-        go = Edge(_PARKED, here, sync=Sync(_PROLOGUE, sends=False))
-        automata.append(
-            replace(
-                automaton,
-                locations=(*automaton.locations, Location(_PARKED)),
-                initial=_PARKED,
-                edges=(*automaton.edges, go),
-            )
-        )
+        edges = (*automaton.edges, Edge(_PARKED, here, sync=Sync(_PROLOGUE, sends=False)))
+        places = (*automaton.locations, Location(_PARKED))
+        automata.append(replace(automaton, locations=places, initial=_PARKED, edges=edges))
+    automata.append(_prologue(dict(zip(network.clocks, clocks))))
     values = tuple((name, value) for (name, _), value in zip(network.variables, state.values))
-    return replace(
-        network,
-        variables=values,
-        channels=(*network.channels, _PROLOGUE),
-        automata=(*automata, _prologue(dict(zip(network.clocks, clocks)))),
-    )
+    channels = (*network.channels, _PROLOGUE)
+    return replace(network, variables=values, channels=channels, automata=tuple(automata))
 
 
 def _prologue(clocks: Mapping[str, int]) -> Automaton:
@@ -160,17 +147,10 @@ def _prologue(clocks: Mapping[str, int]) -> Automaton:
     for k, moment in enumerate(moments):
         last = k == len(moments) - 1
         resets = tuple(name for name, value in clocks.items() if value == total - moment and name != watch)
-        locations.append(Location(f"{_PROLOGUE}{k}", (ClockBound(watch, "<=", moment),)))
-        edges.append(
-            Edge(
-                f"{_PROLOGUE}{k}",
-                f"{_PROLOGUE}{k + 1}",
-                Guard((ClockBound(watch, "==", moment),)),
-                Sync(_PROLOGUE, sends=True) if last else None,
-                resets=resets,
-                controllable=False,
-            )
-        )
+        here, then = f"{_PROLOGUE}{k}", Guard((ClockBound(watch, "==", moment),))
+        locations.append(Location(here, (ClockBound(watch, "<=", moment),)))
+        sync = Sync(_PROLOGUE, sends=True) if last else None
+        edges.append(Edge(here, f"{_PROLOGUE}{k + 1}", then, sync, resets=resets, controllable=False))
     locations.append(Location(f"{_PROLOGUE}{len(moments)}"))
     return Automaton(_PROLOGUE, tuple(locations), locations[0].name, tuple(edges))
 

@@ -8,11 +8,11 @@ from typing import Any, Iterator, Sequence, Tuple, Union, cast
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.explanation.ablations import without_conditions
-from pursue_gen.explanation.as_written import as_written
-from pursue_gen.explanation.assumption_changes import assumption_changes
 from pursue_gen.explanation.number_changes import (
     SLOWER,
     Repair,
+    as_written,
+    assumption_changes,
     battery_changes,
     count_changes,
     event_changes,
@@ -28,7 +28,7 @@ from pursue_gen.language.statements.event import MOST_EVENT_PARTS
 from pursue_gen.language.template import name_text
 from pursue_gen.language.times import instead, like
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules
-from pursue_gen.tga.counts import counted
+from pursue_gen.tga.rules import counted
 
 _FINEST = 1000
 """The largest denominator of a reaction that the command line takes."""

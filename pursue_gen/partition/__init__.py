@@ -1,6 +1,13 @@
 """From a strategy to one sub-strategy per controller (what the thesis calls UP2SUBCO)."""
 
-from pursue_gen.partition.split import CENTRALIZED, DISTRIBUTED, GENERAL, SubStrategy, partition
-from pursue_gen.partition.unneeded import unneeded, unneeded_words
+from pursue_gen.partition.split import (
+    CENTRALIZED,
+    DISTRIBUTED,
+    GENERAL,
+    SubStrategy,
+    partition,
+    unneeded,
+    unneeded_words,
+)
 
 __all__ = ["CENTRALIZED", "DISTRIBUTED", "GENERAL", "SubStrategy", "partition", "unneeded", "unneeded_words"]

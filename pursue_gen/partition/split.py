@@ -3,15 +3,18 @@
 A command belongs to the automaton that makes its first move. A priori ends (a timer that decides when a robot has
 arrived) are for the `general` controller only: elsewhere the robot reports them (thesis, section 4.2.2). The commands
 of the objectives' automata (`reachObj`, `obj`) belong to no robot: the policies for them are the thesis's three.
+Robots and allies that are never commanded may be ones that the strategy does without.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, List, Sequence, Tuple
+from typing import Dict, List, Sequence, Set, Tuple
 
-from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.language.scenario import Agent
+from pursue_gen.diagnostics import PursueError, error, listed
+from pursue_gen.language.clauses import Domains
+from pursue_gen.language.conditions import Holds, atoms
+from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.outcomes import Invalid, NotProven
 from pursue_gen.synthesis.strategy import Command, DiscreteState, Strategy
@@ -150,3 +153,48 @@ def _check_senders(strategy: Strategy, network: Network, controlled: Tuple[str, 
             message = f"the strategy commands {name}.{edge.source}->{name}.{edge.target}, but '{name}' is {what}"
             hint = f"use the plan with its own scenario, or make the agent '{name}' controllable"
             raise Invalid([error("PAR004", message, hint=hint)])
+
+
+def unneeded(scenario: Scenario, strategy: Strategy) -> Tuple[Agent, ...]:
+    """The controllable agents that the strategy never moves, and whose mere presence helps nobody.
+
+    Who stands at a place of a patrol, is named in a condition, or may be needed by somebody else's event, is needed.
+    So are all where people may order something.
+    """
+    if scenario.orders:
+        return ()
+    moves = [move for block in strategy.blocks for command in block.commands for move in command.moves]
+    moved = {move.automaton for move in moves}
+    begun = {move.edge.channel for move in moves}
+    begun |= {ref.name for agent in scenario.agents if not agent.controllable for ref in agent.can_do}
+    present = _present(scenario)
+    return tuple(
+        agent
+        for agent in scenario.agents
+        if agent.controllable
+        and agent.name not in moved | present
+        and not any(ref.name in begun for ref in agent.reacts_to)
+    )
+
+
+def unneeded_words(agents: Sequence[Agent]) -> str:
+    """That these agents are not needed, as a sentence; "" where there are none."""
+    if not agents:
+        return ""
+    verb, them = ("is", "it") if len(agents) == 1 else ("are", "them")
+    names = listed(agent.shown for agent in agents)
+    return f"{names} {verb} not needed in this mission: the strategy never commands {them}."
+
+
+def _present(scenario: Scenario) -> Set[str]:
+    """The agents that objectives and conditions look at where they stand."""
+    domains = Domains(scenario)
+    found: Set[str] = set()
+    for condition, _ in scenario.conditions():
+        for atom in atoms(condition):
+            if not isinstance(atom, Holds):
+                found.update(domains.among(atom.who))
+    for patrol in scenario.patrols:
+        places = patrol.order or (patrol.place.name,)
+        found.update(agent.name for agent in scenario.on_patrol(patrol) if agent.location.name in places)
+    return found

@@ -1,6 +1,5 @@
-"""A strategy as plain data for the nodes of a mission: in YAML files, and in JSON for a new plan.
-
-docs/run_time.md describes the format.
+"""A strategy as plain data for the nodes of a mission: in YAML files that a person can follow (state → command → zone),
+with the cover that the observer reads, and in JSON for a new plan. docs/run_time.md describes the format.
 """
 
 from __future__ import annotations
@@ -12,6 +11,7 @@ from pursue_gen.language.network_names import reach_objective, rule_turn, safety
 from pursue_gen.language.numbers import Number, decimal_text
 from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.partition.split import SubStrategy
+from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.synthesis.plan_text import constraint_texts
 from pursue_gen.synthesis.strategy import Command, DiscreteState, Strategy, Zone
 from pursue_gen.tga.event_words import event_word
@@ -91,3 +91,47 @@ def _zones(zones: Iterable[Zone]) -> List[str]:
 def zone_text(zone: Zone) -> str:
     """The zone as comparisons joined by `&&`, `always` for the one without any."""
     return " && ".join(constraint_texts(zone, space=" ")) or "always"
+
+
+_WHEREVER = "Whoever a state does not name may be anywhere, and is not waited for."
+_STAGES = "Stages are played one after the other: each ends where all of its places are reached."
+_SHARES = "Shares are played at the same time: each avoids its places, and has an entry of its own in every state."
+_PASSAGES = "Whoever sets off for a place has it until it sets off from there; each agent has an entry in every state."
+
+
+def render(sub: SubStrategy, scenario_name: str, generator: str, reaction: Fraction) -> str:
+    """The data file of one controller.
+
+    `generator` is the version that stands in the header, `reaction` the delay (time units) that the strategy allows a
+    command.
+    """
+    head = (
+        f"Strategy of {sub.controller} in {scenario_name}, written by pursue-gen {generator}.",
+        "In a state below, the command is due as soon as one of its zones (clocks in time units) holds.",
+        *((_WHEREVER,) if sub.in_parts else ()),
+    )
+    data = strategy_data(sub, reaction)
+    for name in ("commands_agents", "left_out_clocks"):
+        if name in data:
+            data[name] = inline(data[name])
+    data["strategy"] = [{**entry, "state": inline(entry["state"])} for entry in data["strategy"]]
+    return yaml_text(data, head)
+
+
+def render_cover(strategy: Strategy, scenario_name: str, generator: str) -> str:
+    """The data file of the observer: for each state in which zones the strategy waits, and in which it commands."""
+    ends = _PASSAGES if strategy.passages else _SHARES if strategy.shares else _STAGES
+    head = (
+        f"What the strategy for {scenario_name} does, written by pursue-gen {generator}.",
+        "In a state below, it waits or commands as long as one of the zones (clocks in time units) holds.",
+        *((_WHEREVER, ends) if strategy.in_parts else ()),
+    )
+    data = cover_data(strategy)
+    for name in ("stages", "shares"):
+        if name in data:
+            data[name] = [inline(places) for places in data[name]]
+    for name in ("agents", "left_out_clocks"):
+        if name in data:
+            data[name] = inline(data[name])
+    data["cover"] = [{**entry, "state": inline(entry["state"])} for entry in data["cover"]]
+    return yaml_text(data, head)

@@ -28,8 +28,8 @@ from pursue_gen.proof.worst_case import with_counter, with_deadline
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.compile_game import compile_game
+from pursue_gen.synthesis.relaxed import least_time
 from pursue_gen.synthesis.strategy import Strategy, Zone, ZoneKey, with_edges, with_zones
-from pursue_gen.synthesis.time_bounds import least_time
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.scale import common_denominator, least_common_multiple, scaled
 

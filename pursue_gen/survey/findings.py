@@ -6,7 +6,7 @@ import math
 from typing import AbstractSet, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, listed, warning
-from pursue_gen.drawing.clearance import Clearance
+from pursue_gen.drawing.ground import Clearance
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.rewriting import Movement
 from pursue_gen.language.scenario import Connection, Pose, Scenario

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Dict, FrozenSet, Iterator, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Severity, counted, error, in_order, usage_error
-from pursue_gen.drawing.clearance import Clearance
+from pursue_gen.drawing.ground import Clearance
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.numbers import Number
@@ -22,9 +22,8 @@ from pursue_gen.survey.copying import SURVEY, others_windows, rounded, with_ways
 from pursue_gen.survey.graph import graph_of
 from pursue_gen.survey.grid import Grid, grid_of
 from pursue_gen.survey.plan import Pair, Plan
-from pursue_gen.survey.routes import Route, Routes
+from pursue_gen.survey.routes import Drive, Route, Routes, window
 from pursue_gen.survey.spots import Spots, Standing, proposed_spots
-from pursue_gen.survey.times import Drive, window
 from pursue_gen.workspace.levels import Level, check_levels, on_level
 from pursue_gen.workspace.map_check import check_spots
 from pursue_gen.workspace.map_spots import with_poses, with_spots

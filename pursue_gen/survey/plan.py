@@ -8,7 +8,7 @@ from functools import cached_property
 from itertools import combinations
 from typing import Dict, Iterable, List, Mapping, Optional, Tuple
 
-from pursue_gen.drawing.clearance import to_line
+from pursue_gen.drawing.ground import to_line
 from pursue_gen.survey.graph import Graph
 from pursue_gen.survey.grid import Point
 from pursue_gen.survey.routes import Route, Routes

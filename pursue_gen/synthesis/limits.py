@@ -10,7 +10,7 @@ from typing import Callable, Iterator, Optional
 
 from pursue_gen.diagnostics import error
 from pursue_gen.outcomes import LimitHit
-from pursue_gen.zones.effort import look_after
+from pursue_gen.zones.dbm import look_after
 
 CAREFUL = 1024
 """MiB that the commands allow themselves by default, if the machine has them. Not measured."""

@@ -14,25 +14,17 @@ name is printed by its id with an underscore before it. A plan of ours names wha
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import Collection, Dict, Iterator, List, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
 from pursue_gen.outcomes import Invalid, NotProven
-from pursue_gen.synthesis.plan_parts import (
-    left_out_lines,
-    read_left_out_clocks,
-    read_passages,
-    read_shares,
-    read_stages,
-    read_tours,
-    read_watchers,
-    spoken_of,
-)
+from pursue_gen.synthesis.plan_parts import left_out_lines, read_own, read_parts, spoken_of
 from pursue_gen.synthesis.plan_reader import RUN_AGAIN, Names, Reader, printed_location
 from pursue_gen.synthesis.plan_text import assign_text, guard_text, sync_text, zones_text
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Move, Strategy, Zone, with_automata_of
 from pursue_gen.tga.network import Network, Objective
-from pursue_gen.tga.uppaal_keywords import with_own_names
+from pursue_gen.tga.uppaal_write import with_own_names
 
 _ESCAPE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 _HEADER = re.compile(r"^[ \t]*(Strategy|Counter[ -]strategy) to [^\n:]*:[ \t\r]*$", re.MULTILINE | re.IGNORECASE)
@@ -52,17 +44,15 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
     that the property does not hold), where the text is cut or damaged, and where it does not fit the network.
     """
     text = _ESCAPE.sub("", text).replace("\r\n", "\n")
-    named = text.partition("\nState:")[0], network, file
-    watchers, passages, tours = read_watchers(*named), read_passages(*named), read_tours(*named)
-    network = with_automata_of(network, Strategy((), watchers=watchers, passages=passages, tours=tours))
+    own = read_own(text.partition("\nState:")[0], network, file)
+    network = with_automata_of(network, own)
     text = with_own_names(text, network)
     header = _HEADER.search(text)
     if header is None:
         raise _no_strategy(text, file)
     above = text[: header.start()]
-    stages, shares = read_stages(above, network, file), read_shares(above, network, file)
-    left_out_clocks = read_left_out_clocks(above, network, file)
-    reader = Reader(Names(spoken_of(above, network, file)), file, bool(stages or shares or passages))
+    strategy = read_parts(above, network, file, own)
+    reader = Reader(Names(spoken_of(above, network, file)), file, strategy.in_parts)
     first = text.count("\n", 0, header.end()) + 1
     groups: List[List[_Line]] = []
     for number, line in enumerate(map(str.rstrip, text[header.end() :].split("\n")), first):
@@ -81,7 +71,7 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
         reader.line, reader.text = first, ""
         reader.fail("PLN003", "the strategy is empty: no state follows its title", RUN_AGAIN)
     counter = header.group(1).lower().startswith("counter")
-    return Strategy(tuple(blocks.values()), counter, stages, left_out_clocks, shares, watchers, passages, tours)
+    return replace(strategy, blocks=tuple(blocks.values()), counter=counter)
 
 
 def _state(reader: Reader, line: _Line, known: Collection[DiscreteState]) -> DiscreteState:

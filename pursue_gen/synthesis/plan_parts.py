@@ -21,8 +21,8 @@ other, behind the number, from 1, of the one that follows the last.
 from __future__ import annotations
 
 import re
-from functools import partial
-from typing import Callable, List, Match, Optional, Pattern, Set, Tuple, TypeVar
+from dataclasses import replace
+from typing import Any, Callable, Dict, List, Mapping, Match, Optional, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
 from pursue_gen.outcomes import Invalid
@@ -30,18 +30,9 @@ from pursue_gen.synthesis.strategy import Place, Strategy
 from pursue_gen.tga.ending import is_value
 from pursue_gen.tga.network import Automaton, Network
 from pursue_gen.tga.part import part_of
-from pursue_gen.tga.passages import Passage, passage_automaton
-from pursue_gen.tga.tours import Tour, tour_automaton
+from pursue_gen.tga.tours import Passage, Tour, passage_automaton, tour_automaton
 from pursue_gen.tga.watchers import Watcher, watched_by
 
-Own = TypeVar("Own", Watcher, Passage, Tour)
-
-_STAGE = re.compile(r"^ -- Stage:(.*)$", re.MULTILINE)
-_OWN = {
-    what: re.compile(rf"^ -- {what.capitalize()}:(.*)$", re.MULTILINE)
-    for what in ("watcher", "passage", "passage again", "tour")
-}
-_SHARE = re.compile(r"^ -- Share:(.*)$", re.MULTILINE)
 _LEFT_OUT_CLOCKS = re.compile(r"^ -- Left out clocks:(.*)$", re.MULTILINE)
 _LEFT_OUT = re.compile(r"^ -- Left out:(.*)$", re.MULTILINE)
 
@@ -82,70 +73,49 @@ def follower_lines(strategy: Strategy) -> List[str]:
     return [*watchers, *tours]
 
 
-def read_stages(text: str, network: Network, file: str) -> Tuple[Tuple[Place, ...], ...]:
-    """The stages of a plan, whose text above its title this is. Raises PursueError for an unknown milestone."""
-    return _read_places(text, network, file, _STAGE, "milestone")
+def read_own(text: str, network: Network, file: str) -> Strategy:
+    """A strategy without blocks, with the watchers, passages and tours of a plan, whose text above its first state this
+    is. Raises PursueError for one that cannot be."""
+    found: Dict[str, List[Any]] = {}
+    for what, (made, automaton_of) in _OWN.items():
+        found[what] = []
+        for match in re.finditer(rf"^ -- {what.capitalize()}:(.*)$", text, re.MULTILINE):
+            words = match.group(1).split()
+            own = made(words) if words else None
+            if own is None or (automaton_of(network, own) is None and own.name not in network.names):
+                message = f"the plan has a {what} '{' '.join(words)}', which the network cannot have"
+                raise _unknown(text, match, message, file)
+            found[what].append(own)
+    watchers, *passages, tours = map(tuple, found.values())
+    return Strategy((), watchers=watchers, passages=sum(passages, ()), tours=tours)
 
 
-def read_shares(text: str, network: Network, file: str) -> Tuple[Tuple[Place, ...], ...]:
-    """The shares of such a plan. Raises PursueError for an unknown place."""
-    return _read_places(text, network, file, _SHARE, "share for")
+def _tour(words: List[str]) -> Tour:
+    again = words[1] if len(words) > 1 and words[1].isascii() and words[1].isdigit() else "0"
+    return Tour(words[0], tuple(words[2:]), int(again[:9]) - 1)
 
 
-def read_watchers(text: str, network: Network, file: str) -> Tuple[Watcher, ...]:
-    """The watchers of such a plan. Raises PursueError for one that nobody can be."""
-    return _read_own(text, network, file, "watcher", lambda each: Watcher(each[0], tuple(each[1:])), watched_by)
+_OWN: Mapping[str, Tuple[Callable[[List[str]], Any], Callable[[Network, Any], Optional[Automaton]]]] = {
+    "watcher": (lambda words: Watcher(words[0], tuple(words[1:])), watched_by),
+    "passage": (lambda words: Passage(words[0], tuple(words[1:])), passage_automaton),
+    "passage again": (lambda words: Passage(words[0], tuple(words[1:]), True), passage_automaton),
+    "tour": (_tour, tour_automaton),
+}
+"""By the kind of a strategy's own automata what the words of its line mean, and its automaton."""
 
 
-def read_passages(text: str, network: Network, file: str) -> Tuple[Passage, ...]:
-    """The passages of such a plan. Raises PursueError for one that cannot be."""
-    once, again = (
-        _read_own(text, network, file, what, partial(_passage, again=again), passage_automaton)
-        for what, again in (("passage", False), ("passage again", True))
-    )
-    return (*once, *again)
+def read_parts(text: str, network: Network, file: str, own: Strategy) -> Strategy:
+    """The strategy with the stages or shares of a plan, whose text above its title this is, and the clocks that it
+    leaves out. Raises PursueError for an unknown milestone, place or clock."""
+    given = text, network, file
+    stages, shares = _read_places(*given, "Stage", "milestone"), _read_places(*given, "Share", "share for")
+    return replace(own, stages=stages, shares=shares, left_out_clocks=_read_left_out_clocks(*given))
 
 
-def _passage(words: List[str], again: bool) -> Passage:
-    return Passage(words[0], tuple(words[1:]), again)
-
-
-def read_tours(text: str, network: Network, file: str) -> Tuple[Tour, ...]:
-    """The tours of such a plan. Raises PursueError for one that cannot be."""
-
-    def tour(words: List[str]) -> Tour:
-        again = words[1] if len(words) > 1 and words[1].isascii() and words[1].isdigit() else "0"
-        return Tour(words[0], tuple(words[2:]), int(again[:9]) - 1)
-
-    return _read_own(text, network, file, "tour", tour, tour_automaton)
-
-
-def _read_own(
-    text: str,
-    network: Network,
-    file: str,
-    what: str,
-    made: Callable[[List[str]], Own],
-    automaton_of: Callable[[Network, Own], Optional[Automaton]],
-) -> Tuple[Own, ...]:
-    """The strategy's own automata of one kind, as the words of their lines say."""
-    found: List[Own] = []
-    for match in _OWN[what].finditer(text):
-        words = match.group(1).split()
-        own = made(words) if words else None
-        if own is None or (automaton_of(network, own) is None and own.name not in network.names):
-            message = f"the plan has a {what} '{' '.join(words)}', which the network cannot have"
-            raise _unknown(text, match, message, file)
-        found.append(own)
-    return tuple(found)
-
-
-def _read_places(
-    text: str, network: Network, file: str, line: Pattern[str], what: str
-) -> Tuple[Tuple[Place, ...], ...]:
+def _read_places(text: str, network: Network, file: str, line: str, what: str) -> Tuple[Tuple[Place, ...], ...]:
     known = {(automaton.name, location.name) for automaton in network.automata for location in automaton.locations}
     stages: List[Tuple[Place, ...]] = []
-    for match in line.finditer(text):
+    for match in re.finditer(rf"^ -- {line}:(.*)$", text, re.MULTILINE):
         milestones = []
         for word in match.group(1).split():
             name, sign, value = re.split(r"([.=]|$)", word, maxsplit=1)
@@ -156,8 +126,7 @@ def _read_places(
     return tuple(stages)
 
 
-def read_left_out_clocks(text: str, network: Network, file: str) -> Tuple[str, ...]:
-    """The clocks that a plan leaves out, whose text above its title this is. Raises PursueError for an unknown one."""
+def _read_left_out_clocks(text: str, network: Network, file: str) -> Tuple[str, ...]:
     clocks: List[str] = []
     for match in _LEFT_OUT_CLOCKS.finditer(text):
         clocks += match.group(1).split()

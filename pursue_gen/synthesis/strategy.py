@@ -11,9 +11,8 @@ from typing import Callable, FrozenSet, Iterable, Iterator, List, Mapping, Optio
 
 from pursue_gen.tga.network import Constraint as Constraint
 from pursue_gen.tga.network import Edge, Network
-from pursue_gen.tga.passages import Passage, with_passages
 from pursue_gen.tga.scale import common_denominator
-from pursue_gen.tga.tours import Tour, with_tours
+from pursue_gen.tga.tours import Passage, Tour, with_passages, with_tours
 from pursue_gen.tga.watchers import Watcher, with_watchers
 
 Place = Tuple[str, str]
@@ -93,7 +92,7 @@ class Strategy:
     them (see `proof.shares`). A strategy has stages or shares, or neither. `watchers` and `tours`: automata that the
     network has beside its own; a share that names a watcher may have the objective in its place.
 
-    One with `passages` has an automaton for each of them, too (see `tga.passages`). A block is for the one agent that
+    One with `passages` has an automaton for each of them, too (see `tga.tours`). A block is for the one agent that
     it commands, or that it tells to wait, and names what that has to know (see `proof.passages`).
 
     `left_out_clocks`: pauses of the environment (see `tga.pauses`) on which it does not rely. Its zones do not compare

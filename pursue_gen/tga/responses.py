@@ -17,7 +17,7 @@ from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.scenario import Escort, Ref, Respond, Scenario
 from pursue_gen.tga.agents import Surroundings
-from pursue_gen.tga.changes import Change, arriving, found_out, happening, placed, setting_off
+from pursue_gen.tga.conditions import Change, arriving, found_out, happening, placed, setting_off
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Sync
 
 _Moves = Dict[str, Change]

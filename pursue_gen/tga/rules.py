@@ -8,18 +8,23 @@ are listed, and numbered, in the order in which the rule text passes them.
 The original has no `and`. Its automaton is the product of those of its two parts, each of which goes on by itself:
 the location in which the first one has passed i of its locations and the second one j is called
 `<rule><depth><way>_<i>_<j>`.
+
+Events that can happen a limited number of times, and those in parts, are counted by automata like a rule's. In a rule
+for each robot every agent has a turn of its own: a channel does not say who sends on it, so the agent's own edges test
+and set the number of its turn, an edge for each turn.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 from types import MappingProxyType
-from typing import AbstractSet, Dict, Iterable, List, Mapping, Tuple
+from typing import AbstractSet, Dict, Iterable, Iterator, List, Mapping, Tuple
 
 from pursue_gen.language import network_names as names
-from pursue_gen.language.scenario import Both, Choice, Event, Ref, Rule, RuleBody, Sequence
-from pursue_gen.tga.network import Automaton, Edge, Location, Sync
+from pursue_gen.language.scenario import Both, Choice, Event, Ref, Rule, RuleBody, Scenario, Sequence
+from pursue_gen.tga.network import Automaton, Edge, Location, Sync, Test
 
 Turns = Mapping[str, Tuple[int, ...]]
 """For each channel that a rule names: the numbers of the locations at which it is that channel's turn."""
@@ -133,3 +138,88 @@ class _Layout:
         if len(way) < 2:
             return f"{self.rule}0{way}"
         return f"{self._part(way[:-1])}_{'fir' if way[-1] == 'f' else 'sec'}"
+
+
+def counted(scenario: Scenario) -> Iterator[Tuple[Event, int]]:
+    """The events with a limit, and the limit."""
+    return ((event, event.at_most) for event in scenario.events if event.at_most is not None)
+
+
+def split(scenario: Scenario) -> Iterator[Tuple[Event, int]]:
+    """The events in parts, and in how many."""
+    return ((event, event.split) for event in scenario.events if event.split is not None)
+
+
+def count_automaton(event: Event, most: int) -> Tuple[Automaton, Turns]:
+    """The automaton that counts an event, and at which counts it can happen; like a rule that has no next round."""
+    name = names.count(event.name)
+    places = [f"{name}_{number}" for number in range(most + 1)]
+    happens = names.has_happened(event) if event.split else names.event(event.name)  # a part that begins is no time
+    counts, times = Sync(happens, sends=False), names.times(event.name)
+    edges = tuple(
+        Edge(before, after, sync=counts, assign=((times, number),))
+        for number, (before, after) in enumerate(zip(places, places[1:]), start=1)
+    )
+    locations = tuple(Location(place, named=False) for place in places)
+    return Automaton(name, locations, places[0], edges), {event.name: tuple(range(most))}
+
+
+def parts_automaton(event: Event, parts: int) -> Tuple[Automaton, Turns]:
+    """The automaton that counts the parts of an event that are done, and which of its ends is next at which number."""
+    name, variable = names.parts(event.name), names.parts_done(event.name)
+    places = [f"{name}_{number}" for number in range(parts)]
+    part, last = names.part_done(event.name), names.done(event.name)
+    edges = [
+        Edge(before, after, sync=Sync(part, sends=False), assign=((variable, number),))
+        for number, (before, after) in enumerate(zip(places, places[1:]), start=1)
+    ]
+    edges.append(Edge(places[-1], places[0], sync=Sync(last, sends=False), assign=((variable, 0),)))
+    locations = tuple(Location(place, named=False) for place in places)
+    turns: Turns = {part: tuple(range(parts - 1)), last: (parts - 1,)}
+    return Automaton(name, locations, places[0], tuple(edges)), turns
+
+
+@dataclass(frozen=True)
+class OwnTurn:
+    """An agent's turn in a rule. `variable` holds the number of a location of `order`, which is no automaton of the
+    network: it says what leads from one number to the next. `shown`: what people read for the agent.
+    """
+
+    rule: Rule
+    agent: str
+    shown: str
+    variable: str
+    order: Automaton
+
+    @property
+    def name(self) -> str:
+        """What people call it."""
+        return f"{self.rule.name} of {self.shown}"
+
+
+def own_turns(scenario: Scenario) -> Iterator[OwnTurn]:
+    """The turns of all agents in rules for each of them, in the order of the rules."""
+    for rule in scenario.rules:
+        for agent in scenario.bound_by(rule):
+            order, _ = rule_of(rule, scenario.events)
+            yield OwnTurn(rule, agent.name, agent.shown, names.own_turn(rule.name, agent.name), order)
+
+
+def bound(automaton: Automaton, turns: Tuple[OwnTurn, ...]) -> Automaton:
+    """The automaton of an agent that keeps to its turns; those of other agents change nothing."""
+    for turn in (turn for turn in turns if turn.agent == automaton.name):
+        automaton = automaton.with_each(partial(_in_turn, turn))
+    return automaton
+
+
+def _in_turn(turn: OwnTurn, edge: Edge) -> List[Edge]:
+    """The edge, once for each number at which it is its turn; alone where the rule does not name what it does."""
+    steps = [] if edge.sent is None else _steps(turn, edge.sent)
+    return [edge.plus((Test(turn.variable, now),), assign=((turn.variable, then),)) for now, then in steps] or [edge]
+
+
+def _steps(turn: OwnTurn, channel: str) -> List[Tuple[int, int]]:
+    """From which number to which one the channel leads."""
+    numbers = {location.name: number for number, location in enumerate(turn.order.locations)}
+    steps = (edge for edge in turn.order.edges if edge.channel == channel)
+    return [(numbers[step.source], numbers[step.target]) for step in steps]

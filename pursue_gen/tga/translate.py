@@ -11,21 +11,16 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import Invalid
 from pursue_gen.tga.agents import Surroundings, agent_automaton
 from pursue_gen.tga.apart import apart, pause_variables
-from pursue_gen.tga.assumptions import assumed, assumption_clocks, assumption_variables
-from pursue_gen.tga.awaited import ways_awaited
-from pursue_gen.tga.batteries import battery_variables, powered
+from pursue_gen.tga.assumptions import assumed, assumption_clocks, assumption_variables, ways_awaited
 from pursue_gen.tga.conditions import Conditions
-from pursue_gen.tga.counts import count_automaton, counted, parts_automaton, split
 from pursue_gen.tga.endurance import charge_clocks
-from pursue_gen.tga.loads import laden, load_variables
+from pursue_gen.tga.loads import battery_variables, laden, load_variables, powered
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import reach_automaton, safety_automaton, unlocking
-from pursue_gen.tga.on_order import order_desk
-from pursue_gen.tga.own_turns import bound, own_turns
 from pursue_gen.tga.patrols import arrivals, awaited, turns
 from pursue_gen.tga.positions import positions
-from pursue_gen.tga.requests import request_variables
-from pursue_gen.tga.rules import rule_of
+from pursue_gen.tga.requests import order_desk, request_variables
+from pursue_gen.tga.rules import bound, count_automaton, counted, own_turns, parts_automaton, rule_of, split
 from pursue_gen.tga.states import finding_automata, first_value, found_channels, states_automaton
 
 

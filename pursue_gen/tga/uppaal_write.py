@@ -3,20 +3,22 @@
 Ids are unique over the file. A named location has the id `automaton.location`. A location without a name has its own
 name as its id, so that UPPAAL prints `_<name>` in plans as for the original's networks; only where several automata
 have a nameless location of one name, their ids are `automaton.location` too. The reader takes what follows the last
-dot of an id as the name of a nameless location.
+dot of an id as the name of a nameless location. Names that are words of UPPAAL's models get another name in its files,
+and their own when plans are read: the names of a scenario need not avoid these words.
 """
 
 from __future__ import annotations
 
+import re
 from collections import Counter
-from typing import Dict, Iterable, Iterator, List, Optional, Tuple
+from dataclasses import fields, is_dataclass, replace
+from typing import Any, Dict, Iterable, Iterator, List, Mapping, Optional, Tuple, TypeVar
 from xml.dom import minidom
 
 from pursue_gen.diagnostics import error
 from pursue_gen.outcomes import Invalid
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Network, Objective
 from pursue_gen.tga.scale import common_denominator, scaled
-from pursue_gen.tga.uppaal_keywords import renamed, uppaal_names
 
 _PUBLIC = "-//Uppaal Team//DTD Flat System 1.6//EN"
 _SYSTEM = "http://www.it.uu.se/research/group/darts/uppaal/flat-1_6.dtd"
@@ -176,3 +178,47 @@ def _add(
         element.appendChild(document.createTextNode(text))
     parent.appendChild(element)
     return element
+
+
+T = TypeVar("T")
+
+WORDS = frozenset(
+    "chan clock bool int commit const urgent broadcast init process state guard sync assign system trans deadlock "
+    "imply forall exists typedef struct rate before_update after_update meta priority progress scalar select void "
+    "default switch case enum string double hybrid dynamic spawn exit branchpoint".split()
+)
+"""Words of UPPAAL's models that the language lets people use as names."""
+
+
+def uppaal_names(network: Network) -> Dict[str, str]:
+    """For each name of the network that is a word of UPPAAL the name that it gets there; no other name is like it."""
+    used = {*network.names, *(location.name for automaton in network.automata for location in automaton.locations)}
+    names: Dict[str, str] = {}
+    for word in sorted(used & WORDS):
+        new = word + "_"
+        while new in used:
+            new += "_"
+        names[word] = new
+        used.add(new)
+    return names
+
+
+def renamed(thing: T, names: Mapping[str, str]) -> T:
+    """The network, or a part of it, in which these names are other ones; itself where there are none."""
+    if not names:
+        return thing
+    some: Any = thing
+    if isinstance(thing, str):
+        some = names.get(thing, thing)
+    elif isinstance(thing, tuple):
+        some = tuple(renamed(part, names) for part in thing)
+    elif is_dataclass(thing):
+        some = replace(some, **{each.name: renamed(getattr(some, each.name), names) for each in fields(thing)})
+    return some  # type: ignore[no-any-return]
+
+
+def with_own_names(text: str, network: Network) -> str:
+    """A plan for the network in which its own names stand in place of those that it has in UPPAAL's files."""
+    for word, new in uppaal_names(network).items():
+        text = re.sub(rf"\b{new}\b", word, text)
+    return text

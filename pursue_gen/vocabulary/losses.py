@@ -6,7 +6,7 @@ from typing import Sequence
 
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.synthesis.game import Game, State
-from pursue_gen.tga.awaited import who_awaited
+from pursue_gen.tga.assumptions import who_awaited
 from pursue_gen.tga.objectives import stated
 from pursue_gen.vocabulary.agents import place
 

@@ -12,10 +12,9 @@ from pursue_gen.language.batteries import levels, shown_level
 from pursue_gen.language.loads import carriers, load_words
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, Symbol
-from pursue_gen.tga.counts import counted, split
 from pursue_gen.tga.network import Automaton, Network
 from pursue_gen.tga.objectives import stated
-from pursue_gen.tga.own_turns import own_turns
+from pursue_gen.tga.rules import counted, own_turns, split
 from pursue_runtime.ui.statuses import Status
 
 

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
-from typing import Optional, Tuple
+from typing import Optional
 
-from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.workspace.context import Options
-from pursue_gen.workspace.generate import controllers_of, generate
-from pursue_gen.workspace.machines import nodes_of, read_machines
+from pursue_gen.workspace.generate import generate
 from pursue_gen.workspace.packages import templates_dir
 from pursue_gen.workspace.writer import write_tree
 
-__all__ = ["Options", "generate", "machines_for", "templates_dir", "write_tree", "write_workspace"]
+__all__ = ["Options", "generate", "templates_dir", "write_tree", "write_workspace"]
 
 
 def write_workspace(
@@ -37,15 +34,3 @@ def write_workspace(
     target = folder if folder is not None else Path("workspace_out") / scenario.name
     write_tree(files, target, force)
     return target
-
-
-def machines_for(
-    file: Path, scenario: Scenario, network: Network, strategy: Strategy, options: Options
-) -> Tuple[Options, Tuple[Diagnostic, ...]]:
-    """The options with the machines of a machines.yaml, and warnings about it.
-
-    Raises PursueError for a file that cannot be used, and what `partition` raises.
-    """
-    controllers = controllers_of(scenario, network, strategy, options)
-    machines, findings = read_machines(file, nodes_of(controllers))
-    return replace(options, machines=machines), findings

@@ -20,14 +20,14 @@ from pursue_gen.language.scenario import Reach, Safety, Scenario
 from pursue_gen.language.sentences import condition_of_promise, end_words
 from pursue_gen.language.times import time_units
 from pursue_gen.outcomes import Invalid
-from pursue_gen.partition import SubStrategy, partition, strategy_file, unneeded
+from pursue_gen.partition import SubStrategy, partition, strategy_data, unneeded
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.synthesis.plan import write_plan
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.event_words import event_word
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.uppaal_write import write_network, write_query
-from pursue_gen.workspace import context, deploy, expected, game_file, model_file, ui_file
+from pursue_gen.workspace import context, deploy, game_file, model_file, ui_file
 from pursue_gen.workspace.context import Options
 from pursue_gen.workspace.packages import (
     RECEIVING,
@@ -67,7 +67,7 @@ def generate(
     where = placing(scenario, options.spot_distance)
     templates = templates_dir()
     jinja = environment(templates)
-    trace = expected.first_report(network)
+    trace = model_file.first_report(network)
     plan = write_plan(strategy, network, objective)
     values = context.common(scenario, objective, options, controllers)
     values["plays"] = _plays(scenario, trace)
@@ -75,7 +75,7 @@ def generate(
     data = {
         "poses": poses_text(scenario, where),
         "model": model_file.render(network, objective, scenario, options.reaction, __version__).encode(),
-        "cover": strategy_file.render_cover(strategy, scenario.name, __version__).encode(),
+        "cover": strategy_data.render_cover(strategy, scenario.name, __version__).encode(),
         "game": game_file.render(scenario, options, strategy, plan, __version__).encode(),
         "expected": _expected(network, objective, scenario, controllers),
         "ui": ui_file.render(
@@ -103,12 +103,6 @@ def generate(
     files["map.svg"] = map_svg.draw(scenario, where.places, where.computed).encode()
     files["README.md"] = _readme(jinja, {**values, "margin": options.margin}, scenario, packages, where.computed)
     return files
-
-
-def controllers_of(scenario: Scenario, network: Network, strategy: Strategy, options: Options) -> Tuple[str, ...]:
-    """The names of the controllers, in order."""
-    subs = partition(strategy, network, scenario.agents, options.controllers, options.reach_obj)
-    return tuple(sub.controller for sub in subs if sub.controller != _UI)
 
 
 def mission_of(scenario: str, files: Mapping[str, bytes]) -> Tuple[Manifest, Dict[str, bytes]]:
@@ -181,7 +175,7 @@ def _packages(
     packages = []
     people: Dict[str, bytes] = {}
     for sub in subs:
-        text = strategy_file.render(sub, scenario.name, __version__, options.reaction).encode()
+        text = strategy_data.render(sub, scenario.name, __version__, options.reaction).encode()
         if sub.controller == _UI:
             people = {f"config/{_PEOPLE}.yaml": text}
             continue
@@ -229,7 +223,7 @@ def _expected(network: Network, objective: Objective, scenario: Scenario, contro
     robots = {agent.name for agent in scenario.agents if agent.is_robot}
     owner = {agent: sub.controller for sub in controllers for agent in sub.agents if agent in robots}
     nodes = ["observer", "simulator", _UI, *commands]
-    return expected.expected(network, objective, owner, commands, nodes)
+    return model_file.expected(network, objective, owner, commands, nodes)
 
 
 def _controllers(values: Mapping[str, Any]) -> bytes:

@@ -16,8 +16,7 @@ from pathlib import Path
 from typing import Any, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error, listed, warning
-from pursue_gen.drawing.clearance import Point
-from pursue_gen.drawing.ground import Ground, read_ground
+from pursue_gen.drawing.ground import Ground, Point, read_ground
 from pursue_gen.files import compose_yaml, read_text, span_of
 from pursue_gen.language.scenario import Pose, Scenario
 from pursue_runtime.bounded import BadText, node_value

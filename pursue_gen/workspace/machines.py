@@ -68,12 +68,13 @@ def nodes_of(controllers: Sequence[str]) -> Tuple[str, ...]:
     return ("observer", *controllers, *UI_NODES)
 
 
-def read_machines(file: Path, nodes: Sequence[str]) -> Tuple[Machines, Tuple[Diagnostic, ...]]:
-    """The machines of a machines.yaml for these nodes, and warnings about it.
+def read_machines(file: Path, controllers: Sequence[str]) -> Tuple[Machines, Tuple[Diagnostic, ...]]:
+    """The machines of a machines.yaml for a mission with these controllers, and warnings about it.
 
     Raises PursueError with all that is wrong in it (exit status 2).
     """
-    return parse_machines(read_text(file, "a file of machines, such as machines.yaml"), str(file), nodes)
+    text = read_text(file, "a file of machines, such as machines.yaml")
+    return parse_machines(text, str(file), nodes_of(controllers))
 
 
 def parse_machines(text: str, file: str, nodes: Sequence[str]) -> Tuple[Machines, Tuple[Diagnostic, ...]]:

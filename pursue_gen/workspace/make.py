@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Mapping, Optional, Tuple
@@ -10,12 +10,14 @@ from typing import Mapping, Optional, Tuple
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.partition.split import UI, partition
 from pursue_gen.proof.worst_case import answer_times, worst_case
 from pursue_gen.solving.answers import STATES
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.solution import Solution
 from pursue_gen.solving.verdict import margin_text, margins
-from pursue_gen.workspace import Options, machines_for, write_workspace
+from pursue_gen.workspace import Options, write_workspace
+from pursue_gen.workspace.machines import read_machines
 from pursue_gen.workspace.spots import SPOT_DISTANCE, Table, spots_in_one
 
 _STATES = 10_000
@@ -90,12 +92,15 @@ def make_workspace(
     folder: Optional[Path] = None,
     force: bool = False,
 ) -> Made:
-    """Writes the workspace; `folder` and `force` as for `write_workspace`. Raises as it and `machines_for`."""
+    """Writes the workspace; `folder` and `force` as for `write_workspace`. Raises as it, and as `read_machines` and
+    `partition`."""
     margin = margin_text(won, margins(won, False, request.options.limits)[0], unit=scenario.unit)
     options = options_for(request, won, margin, extras)
     findings = spots_in_one(scenario, extras.spot_distance)
     if extras.machines is not None:
-        options, more = machines_for(extras.machines, scenario, won.network, won.strategy, options)
-        findings += more
+        subs = partition(won.strategy, won.network, scenario.agents, request.controllers, request.reach_obj)
+        controllers = [sub.controller for sub in subs if sub.controller != UI]
+        machines, more = read_machines(extras.machines, controllers)
+        options, findings = replace(options, machines=machines), findings + more
     written = write_workspace(scenario, won.network, won.objective, won.strategy, options, folder, force)
     return Made(written, margin, findings)

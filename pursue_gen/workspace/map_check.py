@@ -8,8 +8,7 @@ from types import MappingProxyType
 from typing import Callable, Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, warning
-from pursue_gen.drawing.clearance import Clearance, Point, to_line
-from pursue_gen.drawing.ground import FREE, OCCUPIED, OUTSIDE, UNKNOWN, Ground
+from pursue_gen.drawing.ground import FREE, OCCUPIED, OUTSIDE, UNKNOWN, Clearance, Ground, Point, to_line
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, without_errors

@@ -6,8 +6,7 @@ import math
 from dataclasses import replace
 from typing import Dict, Mapping, Optional, Sequence
 
-from pursue_gen.drawing.clearance import Clearance, Point, to_line
-from pursue_gen.drawing.ground import FREE, Ground
+from pursue_gen.drawing.ground import FREE, Clearance, Ground, Point, to_line
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.scenario import Pose, Ref, Scenario, Spot
 from pursue_gen.workspace.levels import Level

@@ -9,6 +9,7 @@ as tight as they can be) and holds at least one point: operations that may leave
 from __future__ import annotations
 
 import operator
+import threading
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -16,7 +17,26 @@ from typing import Callable, Iterable, List, Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import error
 from pursue_gen.outcomes import Invalid
-from pursue_gen.zones.effort import attend
+
+
+class _Hook(threading.local):
+    look: Optional[Callable[[], None]] = None
+
+
+_HOOK = _Hook()
+
+
+def look_after(look: Optional[Callable[[], None]]) -> Optional[Callable[[], None]]:
+    """Sets what `attend` calls in this thread (None: nothing); it may raise to end the work. Returns what it was."""
+    before, _HOOK.look = _HOOK.look, look
+    return before
+
+
+def attend() -> None:
+    """Called by whatever loops over zones, for each of them or for all that one is compared with."""
+    if _HOOK.look is not None:
+        _HOOK.look()
+
 
 INF = 1 << 256
 """The raw bound of "no bound". Finite raw bounds are far smaller: `raw` makes none beyond `MOST`, and sums of as many

@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import Iterable, List, Sequence, Tuple
 
-from pursue_gen.zones.dbm import Dbm, Number
-from pursue_gen.zones.effort import attend
+from pursue_gen.zones.dbm import Dbm, Number, attend
 
 
 @dataclass(frozen=True)

@@ -85,9 +85,9 @@ def test_figures_are_kept_beside_those_of_other_commands(tmp_path: Path, project
     shutil.copy(project_root / "docs" / "benchmarks" / "results.json", tmp_path / "benchmarks")
     file = tmp_path / "benchmarks" / "results.json"
     file.write_text(json.dumps({**json.loads(file.read_text()), "ordinary": []}))
-    with mock.patch("benchmarks.synthesis.version", return_value="older"):
+    with mock.patch("benchmarks.ordinary.version", return_value="older"):
         ordinary.keep(tmp_path, [{**ROW, "name": "lab 11", "size": 11}, {**ROW, "name": "lab 2", "size": 2}])
-    with mock.patch("benchmarks.synthesis.version", return_value="newer"):
+    with mock.patch("benchmarks.ordinary.version", return_value="newer"):
         ordinary.keep(tmp_path, [{**ROW, "name": "factory 3", "size": 3}, {**ROW, "name": "lab 2", "size": 2}])
     kept = [(row["name"], row["version"]) for row in json.loads(file.read_text())["ordinary"]]
     assert kept == [("factory 3", "newer"), ("lab 2", "newer"), ("lab 11", "older")]

@@ -26,7 +26,7 @@ from hypothesis import strategies as st
 
 from pursue_gen import __version__
 from pursue_gen.cli.app import main
-from pursue_gen.cli.solution import explained
+from pursue_gen.cli.inputs import explained
 from pursue_gen.diagnostics import error
 from pursue_gen.explanation import costs as costs_module
 from pursue_gen.explanation.costs import Costs

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from pursue_gen.tools.commands import mission_count
-from pursue_gen.tools.commands.mission_count import counting
+from pursue_gen.tools.commands import progress
+from pursue_gen.tools.commands.progress import counting
 from pursue_gen.tools.simulation.planner import SEARCHES
 from tests.cli.test_progress import ERASE, Screen
 from tests.waiting import until
@@ -25,8 +25,8 @@ def test_it_goes_on_while_a_plan_is_looked_for(stream: type, term: str, monkeypa
     out = stream()
     monkeypatch.setattr(sys, "stderr", out)
     monkeypatch.setenv("TERM", term)
-    monkeypatch.setattr(mission_count, "_REDRAW", 0.01)
-    monkeypatch.setattr(mission_count, "_INTERVAL", 0.01)
+    monkeypatch.setattr(progress, "_REDRAW", 0.01)
+    monkeypatch.setattr(progress, "_INTERVAL", 0.01)
     redrawn = (stream, term) == (Screen, "xterm")
     with counting(1200) as count:
         until(lambda: "simulating: 0 of 1,200 missions, 0 s" in out.getvalue(), "it says that none is done")

@@ -10,9 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pursue_gen.drawing.clearance import Clearance
 from pursue_gen.drawing.floor import MapSettings
-from pursue_gen.drawing.ground import Ground, cells_of
+from pursue_gen.drawing.ground import Clearance, Ground, cells_of
 
 ROWS = st.integers(1, 9).flatmap(
     lambda width: st.lists(st.lists(st.sampled_from("....#?"), min_size=width, max_size=width), min_size=1, max_size=9)

@@ -9,7 +9,7 @@ from typing import Callable, List, Tuple
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_gen.drawing.png_pixels import pixels
+from pursue_gen.drawing.floor import pixels
 
 
 def png(rows: List[bytes], width: int, kind: int, depth: int = 8) -> bytes:

@@ -9,10 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_gen.explanation.cheaper import cheaper
 from pursue_gen.explanation.explain import explain, render
-from pursue_gen.explanation.longer import longer
 from pursue_gen.explanation.number_changes import Repair
+from pursue_gen.explanation.offers import cheaper, longer
 from pursue_gen.explanation.repairs import repairs
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario

@@ -11,9 +11,9 @@ import pytest
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.explanation import costs as costs_module
-from pursue_gen.explanation.cheaper import Form, cheaper
 from pursue_gen.explanation.costs import Costs, as_json, costs, in_words
 from pursue_gen.explanation.decided import Decided
+from pursue_gen.explanation.offers import Form, cheaper
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import Lost

@@ -9,9 +9,9 @@ import pytest
 
 from pursue_gen.diagnostics import error
 from pursue_gen.explanation import costs as costs_module
-from pursue_gen.explanation import longer as longer_module
+from pursue_gen.explanation import offers as longer_module
 from pursue_gen.explanation.costs import Costs, as_json, costs, in_words
-from pursue_gen.explanation.longer import Longer, longer
+from pursue_gen.explanation.offers import Longer, longer
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import LimitHit, Lost

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from pursue_gen.explanation import sizes as module
-from pursue_gen.explanation.sizes import Size, sizes
+from pursue_gen.explanation import decided as module
+from pursue_gen.explanation.decided import Size, sizes
 from pursue_gen.language import parse
 
 PARCELS = """poi "gate"

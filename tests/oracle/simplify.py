@@ -7,8 +7,8 @@ from fractions import Fraction
 from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, LimitMonitor, Limits
+from pursue_gen.synthesis.solve import minimal
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, Strategy, Zone, ZoneKey
-from pursue_gen.synthesis.strategy_from import minimal
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.scale import common_denominator
 from pursue_gen.zones.dbm import Dbm, constant, is_strict, raw

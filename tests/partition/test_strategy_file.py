@@ -14,8 +14,7 @@ from hypothesis import strategies as st
 from benchmarks.families import deliver_by_robots
 from pursue_gen.language import parse
 from pursue_gen.partition import SubStrategy, partition
-from pursue_gen.partition.strategy_data import cover_data, strategy_data, zone_text
-from pursue_gen.partition.strategy_file import render, render_cover
+from pursue_gen.partition.strategy_data import cover_data, render, render_cover, strategy_data, zone_text
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.plan_text import read_constraint

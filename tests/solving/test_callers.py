@@ -13,8 +13,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import partition
-from pursue_gen.partition.strategy_data import cover_data, strategy_data
-from pursue_gen.partition.strategy_file import render, render_cover
+from pursue_gen.partition.strategy_data import cover_data, render, render_cover, strategy_data
 from pursue_gen.proof.checker import verify
 from pursue_gen.solving.given_plan import trials
 from pursue_gen.solving.options import DEFAULT, SolveOptions

@@ -30,9 +30,9 @@ from pursue_gen.solving.rules import IDEAL, Rules
 from pursue_gen.solving.solution import guaranteed, solution
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.limits import Limits
+from pursue_gen.synthesis.relaxed import least_time
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, Command, Move, Strategy, Zone
-from pursue_gen.synthesis.time_bounds import least_time
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective
 from pursue_gen.tga.scale import scaled

@@ -12,7 +12,7 @@ from pursue_gen.drawing.ground import Ground
 from pursue_gen.language import check, parse
 from pursue_gen.language.formatter import format_text
 from pursue_gen.survey.make import Options, Survey, surveyed
-from pursue_gen.survey.times import Drive
+from pursue_gen.survey.routes import Drive
 from pursue_gen.workspace.levels import Level
 from pursue_gen.workspace.map_check import read_placed
 from pursue_gen.workspace.robot_size import RobotSize, Sizes

@@ -13,8 +13,7 @@ from pursue_gen.drawing.layout import yaw_of
 from pursue_gen.language.scenario import Pose
 from pursue_gen.survey.graph import graph_of
 from pursue_gen.survey.grid import Point, grid_of
-from pursue_gen.survey.routes import Route, Routes
-from pursue_gen.survey.times import Drive, turned, window
+from pursue_gen.survey.routes import Drive, Route, Routes, turned, window
 from tests.survey.maps import ground_of, three_rooms
 
 

@@ -22,7 +22,7 @@ from pursue_gen.synthesis.engine import Engine, Outcome
 from pursue_gen.synthesis.game import Game, State, joint_moves
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.native.engine import NativeEngine
-from pursue_gen.synthesis.strategy_from import to_strategy
+from pursue_gen.synthesis.solve import to_strategy
 from pursue_gen.tga import ends_reported, scenario_objective, translate
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective, Sync
 from pursue_gen.tga.uppaal import read_network, read_query

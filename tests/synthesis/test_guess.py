@@ -22,9 +22,8 @@ from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.limits import Limits, Progress
 from pursue_gen.synthesis.native.engine import NativeEngine
-from pursue_gen.synthesis.solve import guess, solve
+from pursue_gen.synthesis.solve import guess, solve, to_strategy
 from pursue_gen.synthesis.strategy import Strategy
-from pursue_gen.synthesis.strategy_from import to_strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Kind, Network, Objective
 from tests.synthesis.random_games import started

@@ -10,7 +10,7 @@ import pytest
 from pursue_gen.language import load
 from pursue_gen.proof.checker import verify
 from pursue_gen.synthesis.compile_game import compile_game
-from pursue_gen.synthesis.strategy_from import to_strategy
+from pursue_gen.synthesis.solve import to_strategy
 from pursue_gen.tga import ends_reported, scenario_objective, translate
 from tests.conftest import thesis_scenario
 from tests.oracle.engine import ReferenceEngine, followed

@@ -16,9 +16,9 @@ from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import initial_state, start_zone
 from pursue_gen.synthesis.native.engine import NativeEngine
+from pursue_gen.synthesis.relaxed import least_time
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Strategy
-from pursue_gen.synthesis.time_bounds import least_time
 from pursue_gen.tga.network import (
     Automaton,
     ClockBound,

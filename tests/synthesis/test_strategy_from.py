@@ -9,8 +9,8 @@ from hypothesis import given
 
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import Game
+from pursue_gen.synthesis.solve import minimal, to_strategy, zone_text
 from pursue_gen.synthesis.strategy import Command, Constraint, DiscreteState, Move
-from pursue_gen.synthesis.strategy_from import minimal, to_strategy, zone_text
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective
 from pursue_gen.zones.dbm import Dbm, raw
 from tests.oracle.engine import followed

@@ -9,7 +9,7 @@ from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
 from pursue_gen.proof.independence import why_it_matters
-from pursue_gen.synthesis.time_passes import lets_time_pass
+from pursue_gen.synthesis.cone import lets_time_pass
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective
 from pursue_gen.tga.part import part_of
 from tests.choices import member_of

@@ -20,8 +20,7 @@ from pursue_gen.synthesis.limits import Limits
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Edge, Network
 from pursue_gen.tga.uppaal import read_network, write_network
-from pursue_gen.tools.play.games import session_of
-from pursue_gen.tools.play.session import opening
+from pursue_gen.tools.play.session import opening, session_of
 from pursue_gen.tools.simulation.outcome import SAFE, Settings
 from pursue_gen.tools.simulation.promises import Promises
 from pursue_gen.tools.simulation.runs import MissionRunner, case_of

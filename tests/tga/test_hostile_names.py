@@ -12,9 +12,8 @@ from pursue_gen.diagnostics import Severity
 from pursue_gen.language.parser import read
 from pursue_gen.solving.inputs import findings_of
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tga.uppaal_keywords import WORDS, renamed, uppaal_names
 from pursue_gen.tga.uppaal_read import read_network
-from pursue_gen.tga.uppaal_write import write_network
+from pursue_gen.tga.uppaal_write import WORDS, renamed, uppaal_names, write_network
 from tests.whole_stories import stories
 
 _NAMES = (

@@ -13,7 +13,7 @@ from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.uppaal import read_network, write_network
-from pursue_gen.tga.uppaal_keywords import WORDS, renamed, uppaal_names
+from pursue_gen.tga.uppaal_write import WORDS, renamed, uppaal_names
 from tests.tga.networks import networks, scenario
 
 TEXT = """

@@ -15,8 +15,7 @@ from pursue_gen.solving.optional import Promised, promised_of
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import guaranteed
-from pursue_gen.tools.play.games import session_of
-from pursue_gen.tools.play.session import opening
+from pursue_gen.tools.play.session import opening, session_of
 from pursue_gen.tools.replanning import replan
 from pursue_gen.tools.replay.game import Source, from_data, game_of
 from pursue_gen.workspace import Options, generate

@@ -12,9 +12,8 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pursue_gen.drawing.clearance import Clearance, to_line
 from pursue_gen.drawing.floor import MapSettings
-from pursue_gen.drawing.ground import Ground, cells_of
+from pursue_gen.drawing.ground import Clearance, Ground, cells_of, to_line
 from pursue_gen.language.scenario import Pose, Scenario
 from pursue_gen.workspace.levels import Level
 from pursue_gen.workspace.map_check import check_spots

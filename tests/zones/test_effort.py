@@ -6,8 +6,7 @@ from typing import Any, Callable, List
 
 import pytest
 
-from pursue_gen.zones.dbm import Dbm
-from pursue_gen.zones.effort import look_after
+from pursue_gen.zones.dbm import Dbm, look_after
 from pursue_gen.zones.federation import Federation, predt
 from tests.oracle.unions import merged, outside, with_neighbours, without
 from tests.oracle.zones import past

@@ -71,8 +71,7 @@ def mission_of_scenario(
     `explain`: where the scenario is not won, why is printed.
     """
     from pursue_gen import api
-    from pursue_gen.cli.inputs import settled
-    from pursue_gen.cli.solution import solve_and_print
+    from pursue_gen.cli.inputs import settled, solve_and_print
     from pursue_gen.tools.transport.bundles import make_mission, placed
     from pursue_gen.workspace.spots import spots_in_one
 

@@ -38,12 +38,10 @@ def play(
     Commands are read from stdin, with or without a terminal; help lists them. The exit status is 0.
     """
     from pursue_gen import api
-    from pursue_gen.cli.inputs import settled
+    from pursue_gen.cli.inputs import naming_costs, settled
     from pursue_gen.cli.progress import progress_line
-    from pursue_gen.cli.solution import naming_costs
     from pursue_gen.tools.play.counter import CounterPlay
-    from pursue_gen.tools.play.games import session_of
-    from pursue_gen.tools.play.session import answer, farewell, opening
+    from pursue_gen.tools.play.session import answer, farewell, opening, session_of
 
     read = settled(api.read(scenario), request)
     rules = request.rules(api.game(read)[0])

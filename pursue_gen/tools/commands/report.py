@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, List, Optional
 import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
-from pursue_gen.cli.inputs import scenario_from
-from pursue_gen.cli.on_map import placed_on
+from pursue_gen.cli.inputs import placed_on, scenario_from
 from pursue_gen.cli.options import DEFAULT_DISTANCE, JSON, REQUEST, ROBOT, SCENARIO, choice, with_request
 from pursue_gen.diagnostics import counted, error, usage_error
 from pursue_gen.files import shell_quoted
@@ -21,8 +20,7 @@ if TYPE_CHECKING:
     from pursue_gen.language.scenario import Scenario
     from pursue_gen.solving.options import SolveOptions
     from pursue_gen.solving.request import SolveRequest
-    from pursue_gen.tools.report.make import ReportOptions
-    from pursue_gen.tools.report.whole import Report
+    from pursue_gen.tools.report.whole import Report, ReportOptions
 
 _NAMES = {"reported": "default", "controllable": "ideal"}
 """What a game is called, by who controls the ends in it."""
@@ -68,7 +66,7 @@ def report(
     With --html or --pictures: show the scenario, its strategy and its workspace instead. A scenario that cannot be won
     gets a page that says why.
     """
-    from pursue_gen.tools.report.make import ReportOptions
+    from pursue_gen.tools.report.whole import ReportOptions
     from pursue_gen.workspace.robot_size import read_sizes
 
     html = html or output is not None
@@ -128,10 +126,10 @@ def _check_target(target: Path) -> None:
 
 def _print_tables(file: Path, reach_obj: Optional[str], request: SolveRequest, as_json_: bool) -> None:
     from pursue_gen import api
+    from pursue_gen.cli.inputs import naming_costs
     from pursue_gen.cli.progress import progress_line
-    from pursue_gen.cli.solution import naming_costs
     from pursue_gen.tools.report import commands
-    from pursue_gen.tools.report.make import solved_games
+    from pursue_gen.tools.report.whole import solved_games
 
     request = replace(request, reaction="0" if request.ends == "controllable" else None)
     read = scenario_from(file, request, as_json_)
@@ -159,8 +157,8 @@ def _made(scenario: Scenario, options: ReportOptions, solving: SolveOptions) -> 
     """The report, with lines of progress while it is made."""
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.language.numbers import decimal_text
-    from pursue_gen.tools.commands.mission_count import counting
-    from pursue_gen.tools.report.make import lost_report, solved_both, won_report
+    from pursue_gen.tools.commands.progress import counting
+    from pursue_gen.tools.report.whole import lost_report, solved_both, won_report
 
     try:
         with progress_line() as progress:

@@ -121,7 +121,7 @@ def _send(
     quiet: bool,
 ) -> Sent:
     """Sends a mission's bundle to the robots, with a line of progress for each."""
-    from pursue_gen.tools.commands.uploads import upload_lines
+    from pursue_gen.tools.commands.progress import upload_lines
     from pursue_gen.tools.transport.send_report import fits
     from pursue_gen.tools.transport.sender import send as send_to
 

@@ -56,10 +56,9 @@ def sim(
     stay safe), with faults it neither did that nor stopped; or, ever, a robot got a wrong command. Its play is shown.
     """
     from pursue_gen import api
-    from pursue_gen.cli.inputs import settled
+    from pursue_gen.cli.inputs import naming_costs, settled
     from pursue_gen.cli.progress import progress_line
-    from pursue_gen.cli.solution import naming_costs
-    from pursue_gen.tools.commands.mission_count import counting
+    from pursue_gen.tools.commands.progress import counting
     from pursue_gen.tools.simulation.faults import FAULTS, read_faults
     from pursue_gen.tools.simulation.runs import check_until
 

@@ -30,10 +30,8 @@ from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import IDEAL, Rules
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import Limits, Progress
-from pursue_gen.tools.play.games import session_of
-from pursue_gen.tools.play.session import Session, answer, choices, opening
-from pursue_gen.tools.report.make import ReportOptions, lost_report, won_report
-from pursue_gen.tools.report.whole import report_page
+from pursue_gen.tools.play.session import Session, answer, choices, opening, session_of
+from pursue_gen.tools.report.whole import ReportOptions, lost_report, report_page, won_report
 from pursue_gen.workspace.levels import Level
 from pursue_gen.workspace.map_check import read_placed
 from pursue_gen.workspace.map_spots import with_spots
@@ -236,8 +234,8 @@ def survey(given: SurveyWork, pipe: Connection) -> None:
 def _measured(given: SurveyWork, floor: Path) -> Dict[str, Any]:
     from pursue_gen.survey.copying import with_sizes
     from pursue_gen.survey.make import Options, surveyed  # needs numpy and scipy
+    from pursue_gen.survey.routes import Drive
     from pursue_gen.survey.survey_table import table
-    from pursue_gen.survey.times import Drive
 
     scenario = read_placed(given.text, given.file)
     scenario = read_placed(with_sizes(scenario, sizes_of(scenario, given.told)), given.file)

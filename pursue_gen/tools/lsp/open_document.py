@@ -12,7 +12,7 @@ from pursue_gen.drawing.layout import MOST_PLACES, drawable, poses
 from pursue_gen.language.draft import Draft
 
 if TYPE_CHECKING:
-    from pursue_gen.explanation.sizes import Size
+    from pursue_gen.explanation.decided import Size
 
 
 UTF_16 = "utf-16"
@@ -62,7 +62,7 @@ class OpenDocument(Draft):
     @cached_property
     def sizes(self) -> Tuple[Size, ...]:
         """What the statements of its objectives cost; () while something is wrong with it, or there is none."""
-        from pursue_gen.explanation.sizes import sizes
+        from pursue_gen.explanation.decided import sizes
 
         wrong = any(finding.severity is Severity.ERROR for finding in self.findings)
         return () if wrong else sizes(self.scenario)

@@ -9,9 +9,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Iterator, List, Optional, Sequence, Set, Tuple
+from typing import Iterator, List, Optional, Set, Tuple
 
-from pursue_gen.explanation.policy import COARSE, Window, longest, moments, window
+from pursue_gen.explanation.policy import (
+    COARSE,
+    Choice,
+    Window,
+    Windows,
+    is_driven,
+    longest,
+    moments,
+    preferred,
+    window,
+)
 from pursue_gen.explanation.position import Position, PositionSolver
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.game import JointMove, is_bad, is_goal
@@ -25,11 +35,6 @@ _FARTHEST = 32
 
 _SCAN = 400
 """So many moments are looked at in turn where the likely ones hold no answer. Not measured."""
-
-Answer = Tuple[JointMove, Fraction]
-"""A move and after what delay it is made."""
-
-_Pairs = Sequence[Tuple[JointMove, Window]]
 
 
 @dataclass(frozen=True)
@@ -77,9 +82,9 @@ class CounterPlay:
 
     # What the robots want ---------------------------------------------------------------------------------------------
 
-    def _order(self, play: PlayState) -> Optional[Answer]:
+    def _order(self, play: PlayState) -> Optional[Choice]:
         """The robots' next move: what the person has ordered; before that, that the goal counts as soon as it can."""
-        found: List[Answer] = []
+        found: List[Choice] = []
         for move, open_ in self.setup.open_moves(play, True):
             key = self.setup.owner(move), self.setup.word(move)
             for plan in play.plans:
@@ -109,15 +114,17 @@ class CounterPlay:
 
     # What the others do -----------------------------------------------------------------------------------------------
 
-    def _waited(self, play: PlayState, delay: Optional[Fraction]) -> Optional[Answer]:
+    def _waited(self, play: PlayState, delay: Optional[Fraction]) -> Optional[Choice]:
         """What the others do while the robots wait for so long (None: for ever); None: nothing."""
         here = play.position
         room = longest(self.setup.game, here)
         theirs = self._theirs(play)
-        driven = [(move, open_) for move, open_ in theirs if self._is_driven(here, move)]
+        driven = [(move, open_) for move, open_ in theirs if is_driven(self.setup.game, here, move)]
         if self.setup.safety and self.horizon is None:
             driven = theirs
-        for move, moment in sorted(self._preferred(driven), key=lambda pair: pair[1]):
+        ours = {agent.name for agent in self.setup.scenario.agents if agent.controllable}
+        robots = {k for k, automaton in enumerate(self.setup.game.automata) if automaton.name in ours}
+        for move, moment in preferred(driven, robots, GRAIN):
             if delay is not None and moment > delay and self._stays_lost(play, delay):
                 return None
             if self._in_vain(play, move, moment):
@@ -141,7 +148,7 @@ class CounterPlay:
         """For how long the others may do nothing: for ever where the robots have to reach something."""
         return None if self.horizon is None else max(Fraction(0), self.horizon - play.now)
 
-    def _faster(self, play: PlayState, limit: Fraction) -> Optional[Answer]:
+    def _faster(self, play: PlayState, limit: Fraction) -> Optional[Choice]:
         """A move of the others within that delay that leaves the game lost."""
         theirs = self._theirs(play)
         likely = {Fraction(0), limit, *moments(theirs, COARSE), *moments(theirs, GRAIN)}
@@ -163,7 +170,7 @@ class CounterPlay:
         ends = narrowed(0, int(limit / GRAIN), lambda k: not self._stays_lost(play, k * GRAIN))
         yield from (k * GRAIN for k in ends if k * GRAIN <= limit)
 
-    def _at(self, play: PlayState, theirs: _Pairs, delay: Fraction) -> Optional[Answer]:
+    def _at(self, play: PlayState, theirs: Windows, delay: Fraction) -> Optional[Choice]:
         """A move at that moment; what ends the game first, and nothing that leads nowhere."""
         game = self.setup.game
         for move, open_ in sorted(theirs, key=lambda pair: not is_bad(game, pair[0].target)):
@@ -171,7 +178,7 @@ class CounterPlay:
                 return move, delay
         return None
 
-    def _made(self, play: PlayState, answer: Answer) -> PlayState:
+    def _made(self, play: PlayState, answer: Choice) -> PlayState:
         move, delay = answer
         by = CHANCE if self.setup.is_end(move) else OTHERS
         return self.setup.taken(play, move, play.now + delay, by)
@@ -180,18 +187,7 @@ class CounterPlay:
         moves = self.setup.open_moves(play, False)
         return [pair for pair in moves if not pair[0].changes_nothing]
 
-    def _preferred(self, driven: _Pairs) -> Iterator[Answer]:
-        """Robots end as late as they may, others as soon as they can."""
-        ours = {agent.name for agent in self.setup.scenario.agents if agent.controllable}
-        for move, open_ in driven:
-            late = open_.latest() if self.setup.owner(move) in ours else None
-            delay = open_.earliest(GRAIN) if late is None else late
-            if delay is not None:
-                yield move, delay
 
-    def _is_driven(self, here: Position, move: JointMove) -> bool:
-        bounds = self.setup.game.automata[move.owner].invariants[here.state.locations[move.owner]]
-        return bool(bounds) and self.setup.is_end(move)
 
     # What the solver finds --------------------------------------------------------------------------------------------
 

@@ -1,6 +1,7 @@
 """A game as a person has it: what they type in, what they read. Nothing here knows a terminal.
 
-Every reply leads to another session; the one before stays as it was, which is all that `undo` needs.
+Every reply leads to another session; the one before stays as it was, which is all that `undo` needs. A scenario is a
+game against its strategy, or against a counter-strategy.
 """
 
 from __future__ import annotations
@@ -13,15 +14,21 @@ from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.numbers import time_text
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.sentences import objective_words, promise_words
 from pursue_gen.language.times import unit_name
-from pursue_gen.tools.play.advice import Holding
-from pursue_gen.tools.play.counter import CounterPlay
+from pursue_gen.outcomes import Lost
+from pursue_gen.solving.optional import promised
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
+from pursue_gen.tools.play.counter import CounterPlay, counter_game
 from pursue_gen.tools.play.saving import save
 from pursue_gen.tools.play.situation import ending, overview, situation, window_text
-from pursue_gen.tools.play.state import RUNNING, PlannedMove, PlayState, Setup
-from pursue_gen.tools.play.world import Offer, StrategyPlay
-from pursue_gen.vocabulary.words import Words
+from pursue_gen.tools.play.state import RUNNING, PlannedMove, PlayState, Setup, setup_of
+from pursue_gen.tools.play.world import Advisor, Holding, Offer, StrategyPlay
+from pursue_gen.vocabulary.words import Words, words_of
 
 GameOf = Union[StrategyPlay, CounterPlay]
 
@@ -336,3 +343,26 @@ def farewell(session: Session) -> str:
     if setup.safety:
         return f"You have left at {at}: so far the robots have kept it."
     return f"You have left at {at}, before the goal was reached; the robots would have reached it."
+
+
+def session_of(
+    scenario: Scenario,
+    rules: Rules,
+    seed: int = 1,
+    limits: Limits = NO_LIMITS,
+    progress: Optional[Listener] = None,
+) -> Session:
+    """A new game of a scenario: the person plays the others where its objectives can be met, else the robots.
+
+    Raises LimitHit where a limit is hit before it is decided.
+    """
+    try:
+        options = SolveOptions(limits, progress=progress)
+        found = promised(scenario, options, lambda some, how: solve_scenario(some, rules, how))
+    except Lost:
+        setup = setup_of(scenario.giving_up(scenario.optional), rules)
+        game: GameOf = counter_game(setup, limits.memory, progress)
+    else:
+        setup = setup_of(found.scenario, rules, found.solution.strategy)
+        game = StrategyPlay(setup, Advisor(setup, found.solution.strategy), seed)
+    return Session(game, words_of(setup.scenario, setup.network), setup.beginning())

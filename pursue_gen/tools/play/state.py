@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Iterator, Optional, Tuple
 
-from pursue_gen.explanation.policy import Window, longest, window
+from pursue_gen.explanation.policy import Window, longest, window, within
 from pursue_gen.explanation.position import Position
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import Rules, played
@@ -20,7 +20,6 @@ from pursue_gen.synthesis.strategy import Command, Strategy, with_automata_of
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.event_words import event_word
 from pursue_gen.tga.network import Network, Objective
-from pursue_gen.zones.dbm import is_strict
 
 GRAIN = Fraction(1, 1000)
 """Time units after a moment that is itself just too early; moments that people name are multiples of it."""
@@ -90,13 +89,7 @@ class Setup:
         """
         game, here = self.game, play.position
         mine = game.automata[move.owner].invariants[here.state.locations[move.owner]]
-        result = Window()
-        for i, j, bound in (*((clock, 0, bound) for clock, bound in mine), *move.bounds):
-            if j == 0:
-                result = result.at_most(game.time(bound) - here.clocks[i - 1], is_strict(bound))
-            else:
-                result = result.at_least(-game.time(bound) - here.clocks[j - 1], is_strict(bound))
-        return result
+        return within(game, here, (*((clock, 0, bound) for clock, bound in mine), *move.bounds))
 
     def last_moment(self, play: PlayState) -> Optional[Fraction]:
         """The time until which some agent has to move; None: none has to."""

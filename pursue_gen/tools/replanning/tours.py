@@ -11,7 +11,7 @@ from pursue_gen.solving.due_moves import patrols
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.tours_again import Now
 from pursue_gen.solving.tours_beside import goes_on
-from pursue_gen.synthesis.plan_parts import read_tours, read_watchers
+from pursue_gen.synthesis.plan_parts import read_own
 from pursue_gen.synthesis.strategy import Strategy, with_automata_of
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tools.replanning.request import Request, wrong
@@ -48,8 +48,7 @@ def followers(game: Network, request: Request) -> Strategy:
     game cannot have."""
     text = "\n".join(request.follows)
     try:
-        watched = Strategy((), watchers=read_watchers(text, game, "game.yaml"))
-        return replace(watched, tours=read_tours(text, with_automata_of(game, watched), "game.yaml"))
+        return read_own(text, game, "game.yaml")
     except PursueError as problem:
         message = problem.diagnostics[0].message
         raise wrong(f"follows: {message}", "the lines of the plan of this scenario") from None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Collection, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Scenario
@@ -16,10 +16,12 @@ from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import Game, State, initial_state, is_goal, joint_moves
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Place, Strategy, Zone
-from pursue_gen.tga.network import Objective
+from pursue_gen.tga.network import Edge, Network, Objective
+from pursue_gen.tga.part import part_of
 from pursue_gen.vocabulary.words import Words, words_of
 
 Key = Tuple[Tuple[str, str, str, str], ...]
+Numbers = Tuple[Tuple[int, ...], Tuple[int, ...]]
 
 
 @dataclass(frozen=True)
@@ -100,16 +102,9 @@ def strategy_data_of(scenario: Scenario, won: Solution, reach_obj: str) -> Strat
     """The data of a solution's strategy; `reach_obj` as for `partition`, which decides the controller of a command."""
     if won.strategy.in_parts:
         return _in_parts(scenario, won, reach_obj)
-    builder = _Builder(scenario, won)
-    owners = _owners(scenario, won, reach_obj)
-    automata = tuple(
-        (a.name, _kind(scenario, a.name), tuple(builder.place(a.name, place) for place in a.locations))
-        for a in builder.game.automata
-    )
-    situations = builder.situations()
-    left_out = tuple(a.name for a in won.network.automata if a.name not in {a.name for a in builder.game.automata})
-    shown = tuple(builder.shown)
-    return StrategyData(automata, shown, owners, tuple(builder.zones), situations, left_out, scenario.labels)
+    builder = _Builder(_Frame(scenario, won.network, won.part), won)
+    named = {automaton.name for automaton in won.part.automata}
+    return builder.frame.data(scenario, won, reach_obj, named, builder.situations())
 
 
 def _owners(scenario: Scenario, won: Solution, reach_obj: str) -> Dict[str, Tuple[str, ...]]:
@@ -137,44 +132,26 @@ def _objectives(won: Solution) -> Iterator[Tuple[int, Place, Objective, bool]]:
 
 def _in_parts(scenario: Scenario, won: Solution, reach_obj: str) -> StrategyData:
     """The situations of each part, one after the other; whom a part does not name may be anywhere."""
-    named = {name for block in won.strategy.blocks for name, _ in block.state.locations}
-    every = [automaton.name for automaton in won.network.automata if automaton.name in named]
-    words = _Builder(scenario, replace(won, strategy=Strategy(())))
-    automata = tuple(
-        (a.name, _kind(scenario, a.name), (*(words.place(a.name, place) for place in a.locations), _ANYWHERE))
-        for a in words.game.automata
-        if a.name in named
-    )
-    values = {name for block in won.strategy.blocks for name, _ in block.state.values}
-    shown = [state.name for state in scenario.states if names.state_value(state.name) in values]
-    free = Situation(tuple(len(places) - 1 for _, _, places in automata), (UNKNOWN,) * len(shown))
-    zones: List[Tuple[str, str]] = []
+    strategy = won.strategy
+    named = {name for block in strategy.blocks for name, _ in block.state.locations}
+    values = {name for block in strategy.blocks for name, _ in block.state.values}
+    frame = _Frame(scenario, won.network, part_of(won.network, named, values))
     situations: List[Situation] = []
     parts: List[StagePart] = []
-    for k, agent in enumerate(won.strategy.commanded if won.strategy.passages else ()):
-        blocks = tuple(won.strategy.blocks[n] for n in won.strategy.numbers_of(k, (agent, "")))
+    for k, agent in enumerate(strategy.commanded if strategy.passages else ()):
+        blocks = tuple(strategy.blocks[n] for n in strategy.numbers_of(k, (agent, "")))
         parts.append(StagePart(0, (agent,), "", len(situations)))
-        situations += _Steps(words, every, automata, free).of(agent, blocks, len(situations))
-    zones += words.zones
+        situations += _steps(frame, agent, blocks, len(situations))
     for number, (stage, place, wanted, is_last) in enumerate(_objectives(won)):
-        key = number if won.strategy.shares else stage
-        blocks = tuple(won.strategy.blocks[n] for n in won.strategy.numbers_of(key, place))
-        own = replace(won, objective=wanted, strategy=Strategy(blocks))
-        builder = _Builder(scenario, replace(own, network=own.part), words.words)
-        at = [every.index(automaton.name) for automaton in builder.game.automata]
-        which = [shown.index(name) for name in builder.shown]
+        blocks = tuple(strategy.blocks[n] for n in strategy.numbers_of(number if strategy.shares else stage, place))
+        builder = _Builder(frame, replace(won, objective=wanted, strategy=Strategy(blocks)), len(situations), is_last)
         moving = {name for name, _ in commanded(blocks)}
-        who = tuple(name for name, kind, _ in (automata[k] for k in at) if kind == "robot" and name in moving)
-        until = "" if won.strategy.shares else _until(scenario, words.words, place)
-        parts.append(StagePart(stage, who, until, len(situations)))
-        moved = _Moved(free, at, which, len(zones), len(situations), is_last)
-        situations += [moved.situation(some) for some in builder.situations()]
-        zones += builder.zones
-    named.update(name for name, _ in won.objective.bad if won.strategy.passages or won.strategy.tours)
-    left_out = tuple(automaton.name for automaton in won.network.automata if automaton.name not in named)
-    owners = _owners(scenario, won, reach_obj)
-    found = tuple(zones), tuple(situations), left_out, scenario.labels, tuple(parts)
-    return StrategyData(automata, tuple(shown), owners, *found, ordered=bool(won.strategy.passages))
+        who = (a.name for a in builder.game.automata if a.name in moving and _kind(scenario, a.name) == "robot")
+        until = "" if strategy.shares else _until(scenario, frame.words, place)
+        parts.append(StagePart(stage, tuple(who), until, len(situations)))
+        situations += builder.situations()
+    named.update(name for name, _ in won.objective.bad if strategy.passages or strategy.tours)
+    return frame.data(scenario, won, reach_obj, named, situations, parts)
 
 
 def _until(scenario: Scenario, words: Words, place: Place) -> str:
@@ -184,65 +161,69 @@ def _until(scenario: Scenario, words: Words, place: Place) -> str:
     return f"{states.get(name) or shown_name(name, _kind(scenario, name))}: {words.place(name, value)}"
 
 
-@dataclass(frozen=True)
-class _Moved:
-    """Situations of a part among those of all: numbers of zones and situations count on, automata have others."""
+class _Frame:
+    """What situations are written in: words, automata with their places, the scenario's states, the zones met."""
 
-    free: Situation
-    at: Sequence[int]
-    which: Sequence[int]
-    zones: int
-    before: int
-    is_last: bool
+    def __init__(self, scenario: Scenario, network: Network, shown: Network) -> None:
+        """`shown`: the part of the network that situations speak of."""
+        self.words: Words = words_of(scenario, network)
+        self.automata = {a.name: {place.name: k for k, place in enumerate(a.locations)} for a in shown.automata}
+        values = [name for name, _ in shown.variables]
+        self.states = [state.name for state in scenario.states if names.state_value(state.name) in values]
+        self.who = {name: k for k, name in enumerate(self.automata)}
+        self._zones: Dict[Zone, int] = {}
 
-    def situation(self, some: Situation) -> Situation:
-        """The situation; of whom the part does not name nothing is known."""
-        places, values = list(self.free.places), list(self.free.values)
-        for k, place in zip(self.at, some.places):
-            places[k] = place
-        for k, value in zip(self.which, some.values):
-            values[k] = value
-        wait = tuple(n + self.zones for n in some.wait)
-        ours, others = self._steps(some.commands), self._steps(some.others)
-        return Situation(tuple(places), tuple(values), wait, ours, others, some.goal and self.is_last, some.goal)
+    def at(self, places: Iterable[Tuple[str, str]], values: Iterable[Tuple[str, int]] = ()) -> Numbers:
+        """The numbers of places and values; of whom is not named nothing is known."""
+        place, value = dict(places), dict(values)
+        numbers = tuple(of.get(place.get(name, ""), len(of)) for name, of in self.automata.items())
+        return numbers, tuple(value.get(names.state_value(name), UNKNOWN) for name in self.states)
 
-    def _steps(self, steps: Sequence[Transition]) -> Tuple[Transition, ...]:
-        return tuple(
-            Transition(self.at[s.who], s.words, tuple(n + self.zones for n in s.when), s.target + self.before)
-            for s in steps
+    def zones(self, zones: Sequence[Zone]) -> Tuple[int, ...]:
+        """The numbers of zones."""
+        return tuple(dict.fromkeys(self._zones.setdefault(zone, len(self._zones)) for zone in zones))
+
+    def data(
+        self,
+        scenario: Scenario,
+        won: Solution,
+        reach_obj: str,
+        named: Collection[str],
+        situations: Sequence[Situation],
+        parts: Sequence[StagePart] = (),
+    ) -> StrategyData:
+        """The data with these situations; `named`: the automata that are not left out."""
+        free = (_ANYWHERE,) if parts else ()
+        automata = tuple(
+            (name, _kind(scenario, name), (*((self.words.place(name, place), _parts(place)) for place in of), *free))
+            for name, of in self.automata.items()
+        )
+        return StrategyData(
+            automata,
+            tuple(self.states),
+            _owners(scenario, won, reach_obj),
+            tuple((self.words.when(zone), zone_text(zone)) for zone in self._zones),
+            tuple(situations),
+            tuple(automaton.name for automaton in won.network.automata if automaton.name not in named),
+            scenario.labels,
+            tuple(parts),
+            ordered=bool(won.strategy.passages),
         )
 
 
-@dataclass(frozen=True)
-class _Steps:
-    """What one agent is commanded, step by step, in a strategy with orders of passage."""
-
-    words: _Builder
-    every: Sequence[str]
-    automata: Sequence[Tuple[str, str, Tuple[Tuple[str, Tuple[str, ...]], ...]]]
-    free: Situation
-
-    def of(self, agent: str, blocks: Sequence[Block], before: int) -> List[Situation]:
-        """A situation for each command, in their order, each of which leads to the next; `before`: so many are before
-        the first one."""
-        commanding = [block for block in blocks if block.commands]
-        found: List[Situation] = []
-        for block in commanding:
-            command = block.commands[0]
-            text = self.words.words.move(agent, command.moves[0].edge)
-            when, target = self.words.numbered(command.zones), before + len(found) + 1
-            step = Transition(self.every.index(agent), text, when, target)
-            wait = self.words.numbered(block.wait)
-            found.append(Situation(self._places(block.state), self.free.values, wait, (step,)))
-        last = commanding[-1].commands[0].moves[0]
-        end = DiscreteState(((agent, last.edge.target),), ())
-        return [*found, Situation(self._places(end), self.free.values, done=True)]
-
-    def _places(self, state: DiscreteState) -> Tuple[int, ...]:
-        places = list(self.free.places)
-        for name, location in state.locations:
-            places[self.every.index(name)] = self.words.number(name, location)
-        return tuple(places)
+def _steps(frame: _Frame, agent: str, blocks: Sequence[Block], before: int) -> List[Situation]:
+    """What one agent is commanded, step by step, in a strategy with orders of passage: a situation for each command,
+    each of which leads to the next; `before`: so many situations are before the first one."""
+    found: List[Situation] = []
+    place = ""
+    for block in blocks:
+        for command in block.commands[:1]:
+            edge = command.moves[0].edge
+            when, target = frame.zones(command.zones), before + len(found) + 1
+            step = Transition(frame.who[agent], frame.words.move(agent, edge), when, target)
+            found.append(Situation(*frame.at(block.state.locations), frame.zones(block.wait), (step,)))
+            place = edge.target
+    return [*found, Situation(*frame.at([(agent, place)]), done=True)]
 
 
 def as_json(data: StrategyData) -> Dict[str, Any]:
@@ -272,27 +253,16 @@ def as_json(data: StrategyData) -> Dict[str, Any]:
 
 
 class _Builder:
-    """Numbers situations and zones in the order in which they are met."""
+    """Numbers situations in the order in which they are met: those of a strategy, or of a part that has its own.
 
-    def __init__(self, scenario: Scenario, won: Solution, words: Optional[Words] = None) -> None:
+    `before`: so many situations of other parts are before its own; `is_last`: the part leads to the goal.
+    """
+
+    def __init__(self, frame: _Frame, won: Solution, before: int = 0, is_last: Optional[bool] = None) -> None:
+        self.frame, self._before, self._is_last = frame, before, is_last
         self.game: Game = compile_game(won.part, won.objective, won.reaction)
-        self.words: Words = words or words_of(scenario, won.network)
-        self.zones: List[Tuple[str, str]] = []
-        self._zone_numbers: Dict[Zone, int] = {}
         self._places = [{name: k for k, name in enumerate(a.locations)} for a in self.game.automata]
         self._blocks = {self._state(block.state): block for block in won.strategy.blocks}
-        variables = self.game.variables
-        self.shown = [state.name for state in scenario.states if names.state_value(state.name) in variables]
-        self._shown = [variables.index(names.state_value(name)) for name in self.shown]
-
-    def place(self, automaton: str, location: str) -> Tuple[str, Tuple[str, ...]]:
-        """A place in words, and its parts where it is an agent's."""
-        return self.words.place(automaton, location), _parts(location)
-
-    def number(self, automaton: str, location: str) -> int:
-        """The number of a location."""
-        k = next(k for k, each in enumerate(self.game.automata) if each.name == automaton)
-        return self._places[k][location]
 
     def situations(self) -> Tuple[Situation, ...]:
         """In the order in which plays meet them, from the start; then, if there are any, the rest."""
@@ -312,41 +282,34 @@ class _Builder:
             waiting = [left]
 
     def _situation(self, state: State, numbers: Dict[State, int], waiting: List[State]) -> Situation:
-        values = tuple(state.values[k] for k in self._shown)
+        game, frame = self.game, self.frame
+        places = ((a.name, a.locations[place]) for a, place in zip(game.automata, state.locations))
+        at = frame.at(places, zip(game.variables, state.values))
         block = self._blocks.get(state)
         if block is None:
-            return Situation(state.locations, values, goal=is_goal(self.game, state))
-        moves = list(joint_moves(self.game, state))
+            reached, last = is_goal(game, state), self._is_last
+            return Situation(*at, goal=reached and last is not False, done=reached and last is not None)
+        moves = list(joint_moves(game, state))
         targets = {self._key(move.edges): move.target for move in moves}
 
-        def number(target: State) -> int:
+        def step(automaton: str, edge: Edge, zones: Sequence[Zone], target: State) -> Transition:
             if target not in numbers:
                 numbers[target] = len(numbers)
                 waiting.append(target)
-            return numbers[target]
+            text, number = frame.words.move(automaton, edge), self._before + numbers[target]
+            return Transition(frame.who[automaton], text, frame.zones(zones), number)
 
         commands = []
         for command in block.commands:
             first = command.moves[0]
             key = tuple((m.automaton, m.edge.source, m.edge.target, str(m.edge.sync)) for m in command.moves)
-            who = next(k for k, a in enumerate(self.game.automata) if a.name == first.automaton)
-            text = self.words.move(first.automaton, first.edge)
-            commands.append(Transition(who, text, self.numbered(command.zones), number(targets[key])))
+            commands.append(step(first.automaton, first.edge, command.zones, targets[key]))
         others = []
         for move in moves:
-            known = move.target in self._blocks or is_goal(self.game, move.target)
+            known = move.target in self._blocks or is_goal(game, move.target)
             if not move.controllable and known:  # others cannot happen while the strategy is followed
-                edge = self.game.origins[move.edges[0]]
-                text = self.words.move(self.game.automata[move.owner].name, edge)
-                others.append(Transition(move.owner, text, (), number(move.target)))
-        return Situation(state.locations, values, self.numbered(block.wait), tuple(commands), tuple(others), goal=False)
-
-    def numbered(self, zones: Tuple[Zone, ...]) -> Tuple[int, ...]:
-        for zone in zones:
-            if zone not in self._zone_numbers:
-                self._zone_numbers[zone] = len(self.zones)
-                self.zones.append((self.words.when(zone), zone_text(zone)))
-        return tuple(dict.fromkeys(self._zone_numbers[zone] for zone in zones))
+                others.append(step(game.automata[move.owner].name, game.origins[move.edges[0]], (), move.target))
+        return Situation(*at, frame.zones(block.wait), tuple(commands), tuple(others))
 
     def _key(self, edges: Tuple[int, ...]) -> Key:
         game = self.game

@@ -10,9 +10,8 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.times import unit_name
 from pursue_gen.partition.split import ALL, CENTRALIZED, DEDICATED, DISTRIBUTED
 from pursue_gen.solving.solution import Solution
-from pursue_gen.tools.report.commands import CommandsTable, Game, cells_of, commands_table
+from pursue_gen.tools.report.commands import CommandsTable, Game, ThesisTable, cells_of, commands_table, thesis_table
 from pursue_gen.tools.report.html import Section, rendered, table
-from pursue_gen.tools.report.thesis_figures import ThesisTable, thesis_table
 from pursue_gen.tools.simulation.outcome import Settings
 from pursue_gen.tools.simulation.outcome_table import END_TEXTS, driven_words
 from pursue_gen.tools.simulation.runs import Case, Summary, case_of, simulate, usual_end

@@ -15,8 +15,21 @@ from pursue_gen.tga.event_words import event_word
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import stated
 from pursue_gen.tools.report.html import Section, table
-from pursue_gen.tools.report.recording import Recording, Stay, Step, ending_text, lasting, status_text, stays
-from pursue_gen.tools.report.statuses import broken, changes, conditions, holding, paused, pauses
+from pursue_gen.tools.report.recording import (
+    Recording,
+    Stay,
+    Step,
+    broken,
+    changes,
+    conditions,
+    ending_text,
+    holding,
+    lasting,
+    paused,
+    pauses,
+    status_text,
+    stays,
+)
 from pursue_gen.vocabulary.promises import promise_names
 from pursue_gen.vocabulary.statuses import courses
 from pursue_gen.vocabulary.words import Words, words_of

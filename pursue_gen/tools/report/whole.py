@@ -1,23 +1,37 @@
-"""The whole report of a scenario: what it is made of, its page, and its pictures as files."""
+"""The whole report of a scenario: what it is made of (both games solved, missions simulated, or a scenario that is lost
+explained), its page, and its pictures as files."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Dict, Optional, Sequence, Tuple
+import traceback
+from dataclasses import dataclass, replace
+from typing import Callable, Dict, Optional, Sequence, Tuple
 
+from pursue_gen import outcomes
+from pursue_gen.diagnostics import PursueError
 from pursue_gen.drawing import map_svg
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.drawing.layout import poses
 from pursue_gen.drawing.look import safe
+from pursue_gen.explanation.costs import costs
+from pursue_gen.explanation.explain import explain
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import partition
-from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.inputs import game_of
+from pursue_gen.solving.optional import promised, promised_of
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.request import SolveRequest
+from pursue_gen.solving.rules import IDEAL, Rules, played
 from pursue_gen.solving.solution import Solution
+from pursue_gen.solving.solvers import solved
+from pursue_gen.solving.verdict import margin_text, margins
+from pursue_gen.synthesis.limits import Limits, Listener
+from pursue_gen.tga import translate
 from pursue_gen.tga.network import Network
 from pursue_gen.tools.report import animation, automata, graphviz, ros_graph, strategy, tables, timeline, verdict
-from pursue_gen.tools.report.commands import CommandsTable
+from pursue_gen.tools.report.commands import CommandsTable, game_of_solution
 from pursue_gen.tools.report.html import Section, figure, page
-from pursue_gen.tools.report.recording import Recording
+from pursue_gen.tools.report.recording import Recording, simulated
 from pursue_gen.tools.report.strategy_data import StrategyData, strategy_data_of
 from pursue_gen.tools.report.tables import Measured
 from pursue_gen.tools.report.verdict import Lost
@@ -105,3 +119,75 @@ def _strategy_data(report: Report, won: Solution) -> StrategyData:
 def _topics(report: Report, won: Solution) -> Sequence[ros_graph.Topic]:
     subs = partition(won.strategy, won.network, report.scenario.agents, reach_obj=report.reach_obj)
     return ros_graph.topics(report.scenario, subs)
+
+
+@dataclass(frozen=True)
+class ReportOptions:
+    """What a report holds.
+
+    `reach_obj`: who gets the objective's commands (None: the usual); `runs`: how many missions are simulated for each
+    shape of controllers; `floor`: the floor plan under the map.
+    """
+
+    reach_obj: Optional[str] = None
+    runs: int = 0
+    floor: Optional[Floor] = None
+
+
+def solved_both(scenario: Scenario, options: SolveOptions) -> Tuple[Scenario, Tuple[Solution, Solution]]:
+    """What is promised of a scenario in the default game, solved in that and in the ideal game. Raises as
+    `solvers.solved` does.
+    """
+    found = promised(scenario, options, lambda some, how: solved(*game_of(some), Rules(), how))
+    return found.scenario, (found.solution, solved(*game_of(found.scenario), IDEAL, options))
+
+
+def solved_games(
+    scenario: Scenario, request: SolveRequest, progress: Optional[Listener] = None
+) -> Tuple[Scenario, Tuple[Solution, ...]]:
+    """What is promised of a scenario, and its solutions: in the game that `request.ends` names, else those of
+    `solved_both`. Raises as `solvers.solved` does.
+    """
+    if request.ends is None:
+        return solved_both(scenario, replace(request.options, within=request.deadline, progress=progress))
+    found = promised_of(scenario, request, progress)
+    return found.scenario, (found.solution,)
+
+
+def won_report(
+    scenario: Scenario,
+    both: Tuple[Solution, Solution],
+    options: ReportOptions,
+    limits: Limits,
+    count: Callable[[int], None] = lambda done: None,
+) -> Report:
+    """The report on a scenario that is won; `count` is called with how many missions have been simulated."""
+    won = both[0]
+    margin = margin_text(won, margins(won, False, limits)[0], unit=scenario.unit)
+    game, ideal = map(game_of_solution, both)
+    policies = tables.command_tables(scenario, game, ideal, options.reach_obj)
+    policy = policies[0].reach_obj
+    missions = tables.measured(scenario, won, policy, options.runs, count) if options.runs else ()
+    recording = simulated(tables.case_for(scenario, won, policy), tables.FIRST)
+    made = Report(scenario, won.network, won.rules, won, margin=margin, reach_obj=policy)
+    return replace(made, tables=policies, missions=missions, floor=options.floor, recording=recording)
+
+
+def lost_report(
+    scenario: Scenario,
+    problem: PursueError,
+    limits: Limits,
+    progress: Optional[Listener] = None,
+    floor: Optional[Floor] = None,
+    option: str = "",
+) -> Report:
+    """The report on a scenario that is not won, as `problem` says: why, and what would change that; or that it is not
+    decided, and what makes it so large (`option` as for `costs`).
+    """
+    traceback.clear_frames(problem.__traceback__)  # what the search that has ended holds, else counts as in use
+    rules, scenario = Rules(), scenario.giving_up(scenario.optional)
+    if isinstance(problem, outcomes.Lost):
+        lost = Lost(problem.diagnostics, explain(scenario, rules, limits, progress, problem.parts))
+    else:
+        lost = Lost(problem.diagnostics, None, costs(scenario, rules, limits, progress, option))
+    return Report(scenario, played(translate(scenario), rules), rules, lost=lost, floor=floor)

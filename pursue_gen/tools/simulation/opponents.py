@@ -7,7 +7,7 @@ from typing import List, NamedTuple, Optional, Tuple
 
 from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
 from pursue_gen.proof.moves import JointMove, State
-from pursue_gen.tga.awaited import who_awaited
+from pursue_gen.tga.assumptions import who_awaited
 from pursue_gen.tga.event_words import event_word
 from pursue_gen.tools.simulation.recorder import EPSILON
 from pursue_gen.tools.simulation.remaining import Remaining

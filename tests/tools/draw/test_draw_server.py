@@ -281,7 +281,7 @@ def test_ways_are_measured_on_the_map_as_survey_does(tmp_path: Path) -> None:
     page.answer("survey", {"text": text, **settings})
     done = until(lambda: page.answer("job", {})["state"] == "ended" and page.answer("job", {}), "the end")
     from pursue_gen.survey.make import Options, surveyed
-    from pursue_gen.survey.times import Drive
+    from pursue_gen.survey.routes import Drive
     from pursue_gen.workspace.levels import Level
     from pursue_gen.workspace.map_check import read_placed
 

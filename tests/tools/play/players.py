@@ -13,8 +13,7 @@ from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import IDEAL, Rules
 from pursue_gen.tools.play.counter import CounterPlay
-from pursue_gen.tools.play.games import session_of
-from pursue_gen.tools.play.session import GameOf, Session
+from pursue_gen.tools.play.session import GameOf, Session, session_of
 from pursue_gen.tools.play.state import GRAIN, PlannedMove, PlayState
 from pursue_gen.tools.play.world import Offer, StrategyPlay
 from pursue_gen.vocabulary.words import words_of

@@ -10,9 +10,8 @@ from hypothesis import strategies as st
 from players import do, whims
 
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Strategy, Zone
-from pursue_gen.tools.play.advice import Advisor
 from pursue_gen.tools.play.state import GRAIN, ROBOTS, WON, PlannedMove, setup_of
-from pursue_gen.tools.play.world import StrategyPlay
+from pursue_gen.tools.play.world import Advisor, StrategyPlay
 from tests.two_stages import solved_in_stages
 
 

@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 from pursue_gen.partition import partition
-from pursue_gen.partition.strategy_file import render
+from pursue_gen.partition.strategy_data import render
 from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import played

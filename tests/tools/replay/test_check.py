@@ -8,7 +8,7 @@ from typing import Any, Dict, List, Tuple
 import pytest
 from recordings import PLAY, START, Mission, game, mission
 
-from pursue_gen.partition import partition, strategy_file
+from pursue_gen.partition import partition, strategy_data
 from pursue_gen.tools.replay import Findings, MissionRecord, check
 from pursue_gen.tools.replay.bag import Message
 from pursue_gen.tools.replay.finding import FAULT, NOTE, WORLD
@@ -402,9 +402,9 @@ def plan_data() -> Dict[str, Any]:
     strategy = solution(translate(known.scenario), known.objective, Rules()).strategy
     subs = partition(strategy, known.network, known.scenario.agents)
     strategies = {
-        sub.controller: yaml.safe_load(strategy_file.render(sub, "s", "0", Rules().reaction)) for sub in subs
+        sub.controller: yaml.safe_load(strategy_data.render(sub, "s", "0", Rules().reaction)) for sub in subs
     }
-    cover = yaml.safe_load(strategy_file.render_cover(strategy, "s", "0"))
+    cover = yaml.safe_load(strategy_data.render_cover(strategy, "s", "0"))
     return {"strategies": strategies, "people": None, "cover": cover}
 
 

@@ -14,10 +14,9 @@ from hypothesis import strategies as st
 
 from pursue_gen import __version__
 from pursue_gen.partition import partition
-from pursue_gen.partition.strategy_file import render
+from pursue_gen.partition.strategy_data import render
 from pursue_gen.synthesis.strategy import Block, Strategy
-from pursue_gen.tools.report.commands import Game, as_json, commands_table, render_table
-from pursue_gen.tools.report.thesis_figures import TABLES, thesis_table
+from pursue_gen.tools.report.commands import TABLES, Game, as_json, commands_table, render_table, thesis_table
 from tests.partition.games import AGENTS, QUICK, agent, game, random_strategies
 
 TENTH = Fraction(1, 10)

@@ -18,10 +18,8 @@ from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import Solution, solution
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tools.play.games import session_of
-from pursue_gen.tools.play.session import opening
-from pursue_gen.tools.report.make import ReportOptions, won_report
-from pursue_gen.tools.report.whole import Report, pictures, report_page
+from pursue_gen.tools.play.session import opening, session_of
+from pursue_gen.tools.report.whole import Report, ReportOptions, pictures, report_page, won_report
 from pursue_gen.workspace import Options, generate
 from pursue_runtime.data import parse_data
 from pursue_runtime.model import Model

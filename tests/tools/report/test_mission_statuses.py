@@ -9,8 +9,7 @@ from test_timeline import lanes, tooltips
 
 from pursue_gen.language import parse
 from pursue_gen.tga import translate
-from pursue_gen.tools.report.recording import Recording, Step, stays
-from pursue_gen.tools.report.statuses import broken, changes, conditions, holding
+from pursue_gen.tools.report.recording import Recording, Step, broken, changes, conditions, holding, stays
 from pursue_gen.tools.report.timeline import draw, section
 
 TEXT = """

@@ -18,9 +18,8 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules
 from pursue_gen.synthesis.limits import NO_LIMITS
-from pursue_gen.tools.report.make import ReportOptions, lost_report, solved_both, won_report
 from pursue_gen.tools.report.verdict import Lost, section
-from pursue_gen.tools.report.whole import report_page
+from pursue_gen.tools.report.whole import ReportOptions, lost_report, report_page, solved_both, won_report
 
 pytest.importorskip("tornado", reason="tornado drives the browser")
 sys.path.append(str(Path(__file__).resolve().parents[2] / "ros"))

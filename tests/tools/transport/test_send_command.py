@@ -16,7 +16,7 @@ from fake_robot import GONE, KEY, REFUSED, FakeRobot, serving
 from fake_robot import bundle as make_bundle
 
 from pursue_gen.cli.app import main
-from pursue_gen.tools.commands.uploads import upload_lines
+from pursue_gen.tools.commands.progress import upload_lines
 from pursue_gen.tools.transport.client import Robot, Status
 from pursue_gen.tools.transport.send_report import mission_digest, previous
 from pursue_runtime.manifest import OWN, mission_id
