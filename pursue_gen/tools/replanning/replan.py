@@ -24,6 +24,7 @@ from pursue_gen.proof.worst_case import counting_clock, worst_case
 from pursue_gen.solving.due_moves import patrols
 from pursue_gen.solving.efforts import EFFORTS, Effort
 from pursue_gen.solving.group_games import Group
+from pursue_gen.solving.lost_promises import has_promises
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import played
@@ -137,7 +138,7 @@ def _answer(request: Request, limits: Limits, states: int) -> Dict[str, Any]:
         else:
             shared = _won_in_shares(network, objective, request, options, little)
             if shared is not None:
-                return _won(shared, network, request, None)
+                return _won(shared, network, request, None if states else objective)
             free = won_without_pauses(network, objective, request.rules.reaction, little, options, states or LIMIT)
             if free is not None:
                 return _won(free.strategy, network, request, None if states else objective)
@@ -166,7 +167,7 @@ def _won_in_shares(
     """A proven strategy in shares that so much work finds; None where it finds none. For an order they are shared out
     as before if that wins, and little effort finds nothing else; as before at first where nothing is to be sooner: who
     leaves or joins moves but the promises of one robot."""
-    if not can_be_shared(network, objective):
+    if not can_be_shared(network, objective) and not has_promises(objective):
         return None
     limited, known = replace(options, limits=replace(options.limits, work=work)), Known()
     search = partial(won_in_shares, network, objective, request.rules.reaction, limited, known=known)
