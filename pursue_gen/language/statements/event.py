@@ -32,10 +32,7 @@ def _read_counted(reader: TreeReader, tree: Any) -> Tuple[Ref, int]:
     return reader.ref(name), 1 if number is None else reader.count(number)
 
 
-def counted_text(thing: Optional[Ref], count: int) -> str:
-    """So many of a thing as they are written; "" for none."""
-    if thing is None:
-        return ""
+def _counted_text(thing: Ref, count: int) -> str:
     return thing.name if count == 1 else f"{count} {thing.name}"
 
 
@@ -105,7 +102,7 @@ class Event(Labelled):
         " [duration {duration,latest:window=6}] [may_stop] [in {split:count=4} parts] [takes {takes,taken:counted}]"
         " [gives {gives,given:counted}] [mounts {mounts:thing}] [needs {needs:thing}] [at_most {at_most:count=2} times]"
         " [only_if {only_if:condition=open is_true}]",
-        counted=Filling("counted", _read_counted, counted_text, "thing", rules="counted: [NUMBER] ref"),
+        counted=Filling("counted", _read_counted, _counted_text, "thing", rules="counted: [NUMBER] ref"),
     )
     note = (
         'all but the name is optional; or: duration 6 to 9; behind the name: label "do the work", on_order; behind the '

@@ -12,8 +12,8 @@ from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple, Type
 from pursue_gen.diagnostics import NOWHERE, PursueError, error
 from pursue_gen.language.draft import Draft, rename
 from pursue_gen.language.formatter import format_text, formatted
-from pursue_gen.language.kinds import DECLARED, RESERVED, STATEMENTS
-from pursue_gen.language.names import KINDS
+from pursue_gen.language.kinds import DECLARED, STATEMENTS
+from pursue_gen.language.names import KINDS, reserved
 from pursue_gen.language.occurrences import GROUP
 from pursue_gen.language.poses import read_poses
 from pursue_gen.language.rewriting import parts_in, parts_of
@@ -21,7 +21,6 @@ from pursue_gen.language.statements.base import StatementKind
 from pursue_gen.language.syntax import Statement
 from pursue_gen.language.template import FILLINGS, Filling, Hole
 from pursue_gen.language.tokens import bare
-from pursue_gen.language.usable import reserved
 from pursue_gen.language.word import HOLE, Form
 from pursue_gen.tools.draw import fields
 from pursue_gen.tools.draw.fields import Values, refused
@@ -312,7 +311,7 @@ def _new_name(document: Draft, values: Values, stem: str) -> str:
     if not values.get("name"):
         return next(f"{stem}{number}" for number in count(1) if f"{stem}{number}" not in taken)
     name = fields.name_of(values, "name")
-    why = reserved(name, RESERVED) or (f"{name} is taken" if name in taken else "")
+    why = reserved(name) or (f"{name} is taken" if name in taken else "")
     if why:
         raise refused(why, "choose another name")
     return name

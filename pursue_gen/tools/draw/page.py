@@ -105,6 +105,6 @@ def _text(values: Mapping[str, Any]) -> str:
 
 def file_for(scenario: Optional[Path], floor: Optional[Path]) -> Path:
     """The scenario's file, where none is named: called like the map, in the present folder."""
-    from pursue_gen.language.usable import fitting
+    from pursue_gen.language.names import fitting
 
     return scenario or Path(f"{fitting(floor.stem) if floor is not None else 'my_floor'}.pur")
