@@ -10,8 +10,7 @@ from typing import Any, List, Mapping, Optional, Tuple
 from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
-from pursue_gen.language.lengths import LENGTHS, Length
-from pursue_gen.language.measures import Units
+from pursue_gen.language.measures import LENGTHS, Length, Units
 from pursue_gen.language.numbers import MOST_DIGITS, Number, decimal_text, exact, is_fine, read_number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.times import TIMES, Time, has_unit

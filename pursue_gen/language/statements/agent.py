@@ -8,7 +8,7 @@ from math import ceil, floor
 from typing import Any, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, warning
-from pursue_gen.language.lengths import metres
+from pursue_gen.language.measures import metres
 from pursue_gen.language.numbers import Number, Window, exact, is_fine, window_of
 from pursue_gen.language.refs import Ref, twice
 from pursue_gen.language.statements.base import Labelled

@@ -9,8 +9,8 @@ from typing import Any, Callable, Dict, Mapping, Optional
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing.floor_picture import CLOSE, read_floor
 from pursue_gen.drawing.ground import read_ground
-from pursue_gen.language.lines import plain
 from pursue_gen.language.syntax import MOST_LETTERS
+from pursue_gen.language.tokens import plain
 from pursue_gen.tools.draw import fields, storage
 from pursue_gen.tools.draw.jobs import Jobs
 from pursue_gen.tools.draw.operations import ANYBODY, change

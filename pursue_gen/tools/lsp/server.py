@@ -21,7 +21,7 @@ from pursue_gen.language.document import Edit
 from pursue_gen.language.draft import definition, rename, same_name
 from pursue_gen.language.formatter import formatted
 from pursue_gen.language.kinds import STATEMENTS
-from pursue_gen.language.lines import plain
+from pursue_gen.language.tokens import plain
 from pursue_gen.tools.lsp import convert
 from pursue_gen.tools.lsp.completion import complete
 from pursue_gen.tools.lsp.fixes import fixes
