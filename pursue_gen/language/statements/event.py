@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import ceil, floor
 from typing import Any, Callable, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, warning
 from pursue_gen.language.conditions import Condition, condition_words
-from pursue_gen.language.numbers import Number, Window, exact, is_fine, window_of
+from pursue_gen.language.numbers import Number, Window, exact, is_fine, tenths_above, tenths_below, window_of
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import Labelled, check_window
 from pursue_gen.language.template import Filling, Template
@@ -158,7 +157,7 @@ class Event(Labelled):
         low, high = (Fraction(end) / parts for end in whole)
         if is_fine(low) and is_fine(high):
             return exact(low), exact(high)
-        return exact(Fraction(floor(low * 10), 10)), exact(Fraction(ceil(high * 10), 10))
+        return tenths_below(low), tenths_above(high)
 
     @property
     def load_words(self) -> str:
