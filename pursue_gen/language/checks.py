@@ -12,9 +12,8 @@ from pursue_gen.language.assumption_checks import check_assumptions
 from pursue_gen.language.batteries import check_batteries
 from pursue_gen.language.behaviour import check_events, check_rules, components
 from pursue_gen.language.condition_checks import check_conditions, check_unknown
-from pursue_gen.language.doors import check_doors
 from pursue_gen.language.labels import check_labels
-from pursue_gen.language.lifts import check_lifts, is_said
+from pursue_gen.language.lifts import check_doors, check_lifts, is_said
 from pursue_gen.language.loads import check_loads
 from pursue_gen.language.names import check_names, check_references, events_used
 from pursue_gen.language.numbers import MOST_DIGITS, exact, is_fine

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Callable, Collection, Iterator, List, Optional, Tuple, Union
+from typing import Any, Callable, Collection, Iterator, List, Mapping, Optional, Tuple, Union
+
+from lark import Token
 
 from pursue_gen.diagnostics import listed
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Word
 
 WORDS = (
@@ -124,6 +127,7 @@ Atom = Union[At, OnWay, Doing, Holds, Has]
 
 _SAID = {At: ("at", "POI", "place"), Doing: ("doing", "event", "event"), Has: ("has", "thing", "thing")}
 """What is said of somebody: the verb, the kind of its object, and the field that has it."""
+_BY_VERB: Mapping[str, Any] = {verb: kind for kind, (verb, _, _) in _SAID.items()}
 
 
 @dataclass(frozen=True)
@@ -278,3 +282,47 @@ def who_text(who: Who, shown: bool = False) -> str:
     if who.agent is None:
         return f"any {'robot' if who.robots else 'agent'}"
     return " or ".join(agent.shown if shown else agent.name for agent in who.named)
+
+
+def read_condition(reader: TreeReader, tree: Any) -> Condition:
+    """A condition from its tree."""
+    kind, children = tree.data, tree.children
+    if kind == "negation":
+        return Not(read_condition(reader, children[0]))
+    if kind in ("all_of", "any_of"):
+        return (AllOf if kind == "all_of" else AnyOf)(tuple(read_condition(reader, child) for child in children))
+    if kind == "holds":
+        return Holds(reader.ref(children[0]), children[1].type == "IS_TRUE")
+    if kind == "few" and len(children) > 2:
+        number, refs, value = children
+        states = (Holds(ref, value.type == "IS_TRUE") for ref in reader.refs(refs))
+        return AtMostOf(reader.count(number), tuple(states))
+    if kind == "few":
+        most, everybody = read_some(reader, children[0])
+        if children[1].data == "at_one":
+            places = reader.refs(children[1])
+            return AtMostOf(most, tuple(At(who, place) for who in everybody for place in places))
+        return AtMostOf(most, tuple(_read_predicate(reader, who, children[1]) for who in everybody))
+    first = children[0].children[0]
+    named = not isinstance(first, Token)
+    who = Who(reader.ref(first)) if named else Who(None, robots=len(children[0].children) > 1)
+    condition = _read_predicate(reader, who, children[1])
+    return condition if named or first.type != "NO" else Not(condition)
+
+
+def read_some(reader: TreeReader, tree: Any) -> Tuple[int, Tuple[Who, ...]]:
+    """The number in `2 robots`, `2 agents` or `2 of cart1, cart2, cart3`, and of whom it is one."""
+    number, *who = tree.children
+    if who and not isinstance(who[0], Token):
+        return reader.count(number), tuple(map(Who, reader.refs(who[0])))
+    return reader.count(number), (Who(None, robots=bool(who) and who[0].type != "AGENTS"),)
+
+
+def _read_predicate(reader: TreeReader, who: Who, tree: Any) -> Atom:
+    """What is said of somebody."""
+    refs = [reader.ref(child) for child in tree.children if child is not None]
+    if tree.data in _BY_VERB:
+        said: Atom = _BY_VERB[tree.data](who, *refs)
+        return said
+    origin, target = refs or (None, None)
+    return OnWay(who, origin, target, tree.data == "between")

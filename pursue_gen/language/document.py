@@ -14,9 +14,8 @@ from lark import Token
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.chunks import COMMENTS
 from pursue_gen.language.kinds import STATEMENTS
-from pursue_gen.language.lines import Lines
 from pursue_gen.language.syntax import Statement, Syntax, statements_of, syntax_of, tokens_of, too_large
-from pursue_gen.language.tokens import end_of, start_of
+from pursue_gen.language.tokens import Lines, end_of, start_of
 
 Block = Tuple[Token, ...]
 """A statement with the comments in it and behind it on its line, or comments on a line without a statement before."""

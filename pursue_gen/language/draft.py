@@ -10,11 +10,11 @@ from typing import Dict, Optional, Tuple
 from pursue_gen.diagnostics import Diagnostic, PursueError, Span, an, error
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.document import Document, Edit
-from pursue_gen.language.lines import plain
 from pursue_gen.language.names import KINDS, check_names
 from pursue_gen.language.occurrences import GROUP, VARIABLE, Occurrence, occurrences
 from pursue_gen.language.parser import Reading, read_document
 from pursue_gen.language.scenario import Poi, Scenario
+from pursue_gen.language.tokens import plain
 
 
 @dataclass(frozen=True)

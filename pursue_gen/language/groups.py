@@ -14,9 +14,9 @@ from pursue_gen.diagnostics import Diagnostic, Span, an, error
 from pursue_gen.language.for_each import NAMES, Range, body_of, ranges_of, with_groups
 from pursue_gen.language.kinds import DECLARED, MAY_BE_NAMES, STATEMENTS
 from pursue_gen.language.members import ROBOTS, Refused, Tokens, Words, between
+from pursue_gen.language.names import fitting, well_formed
 from pursue_gen.language.similar import closest
 from pursue_gen.language.tokens import bare, span_of
-from pursue_gen.language.usable import fitting, well_formed
 
 Written = Tuple[Tokens, str]
 """A statement as it is written out, and the member of which it speaks, as in `Span`; "" for others."""

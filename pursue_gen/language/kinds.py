@@ -12,10 +12,9 @@ from pursue_gen.language.statements.dependency import Dependency
 from pursue_gen.language.statements.door import Door
 from pursue_gen.language.statements.event import Event
 from pursue_gen.language.statements.group import ForEach, Group
-from pursue_gen.language.statements.headed import Assume, Batteries, Objective, ReachObjective
+from pursue_gen.language.statements.headed import Assume, Batteries, Objective, Optional, ReachObjective
 from pursue_gen.language.statements.lift import Lift
 from pursue_gen.language.statements.mission import MissionEnd
-from pursue_gen.language.statements.optional import Optional
 from pursue_gen.language.statements.poi import Poi
 from pursue_gen.language.statements.rest import Rest
 from pursue_gen.language.statements.rule import Rule

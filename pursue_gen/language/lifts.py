@@ -1,4 +1,5 @@
-"""Lifts: what each holds unless a scenario says more, which rides there are, and what is wrong with them."""
+"""Lifts and doors: what a lift holds unless a scenario says more, which rides there are, which doors whoever is
+controlled has opened, and what is wrong or doubtful about them."""
 
 from __future__ import annotations
 
@@ -103,3 +104,26 @@ def _on_way(way: Connection, lift: Lift) -> Iterator[Diagnostic]:
     for ref in way.through[:1]:
         hint = f"delete through {ref.name}, or write a place between the two"
         yield error("PML471", f"a way by {lift.name} leads through no door but that of the lift", ref.span, hint)
+
+
+def doors_of(scenario: Scenario, agent: Agent) -> Dict[Way, Tuple[str, ...]]:
+    """By way of a controlled agent the doors that it has opened when it sets off; none for others, who open them
+    themselves, and none for ways without doors."""
+    if not agent.controllable or agent.mobile is None:
+        return {}
+    through = ((each, tuple(ref.name for ref in each.through)) for each in scenario.ways_of(agent.name))
+    return {way: doors for each, doors in through if doors for way in each.directions}
+
+
+def check_doors(scenario: Scenario) -> Iterator[Diagnostic]:
+    """Warnings about doors through which no way leads, or whose pose is missing where places have theirs."""
+    used = {ref.name for way in scenario.connections for ref in way.through}
+    posed = any(poi.pose is not None for poi in scenario.pois)
+    for door in scenario.doors:
+        if door.name not in used:
+            hint = f"write through {door.name} behind the distance of a way, or delete this line"
+            yield warning("PML461", f"no way leads through {door.name}", door.span, hint)
+        elif posed and door.pose is None:
+            message = f"{door.name} has no pose, but places do: robots would wait for it where they set off"
+            hint = "write the pose of its middle behind it: //[x, y, z, qx, qy, qz, qw]"
+            yield warning("PML462", message, door.span, hint)

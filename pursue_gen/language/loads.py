@@ -118,11 +118,8 @@ def check_loads(scenario: Scenario) -> Iterator[Diagnostic]:
         yield from _event(event, taken)
     known = {carrier.agent.name: carrier for carrier in carriers(scenario)}
     for agent in scenario.agents:
-        problem = _number(agent, known.get(agent.name)) or _without(agent, known)
-        if problem is not None:
-            yield problem
-        elif agent.name in known:
-            yield from _carrier(known[agent.name])
+        problems = [*_number(agent, known.get(agent.name))] or [*_without(agent, known)]
+        yield from problems or (_carrier(known[agent.name]) if agent.name in known else ())
 
 
 def _event(event: Event, taken: Container[str]) -> Iterator[Diagnostic]:
@@ -139,32 +136,30 @@ def _event(event: Event, taken: Container[str]) -> Iterator[Diagnostic]:
         yield error("PML342", message, event.mounts.span, "declare two things, one to be carried and one as a tool")
 
 
-def _number(agent: Agent, carrier: Optional[Carrier]) -> Optional[Diagnostic]:
+def _number(agent: Agent, carrier: Optional[Carrier]) -> Iterator[Diagnostic]:
     """A number that nobody can carry, or more at the start than there is room for."""
-    if agent.carries is None or 1 <= agent.carries < MOST_LOADS:
-        tools = [] if carrier is None else [ref for ref in agent.has if ref.name in carrier.tools]
-        room = 1 if agent.carries is None else agent.carries
-        if len(tools) > 1:
-            message = f"{agent.name} has {tools[0].name} and {tools[1].name} mounted at the start: expected one tool"
-            return error("PML340", message, tools[1].span, "delete one of them: another one is mounted by an event")
-        if carrier is not None and carrier.held > room:
-            message = f"{agent.name} has {carrier.held} things at the start and room for {room}"
-            return error("PML340", message, agent.span, f"write carries {carrier.held}, or delete some behind has")
-        return None
-    message = f"{agent.name} carries {agent.carries} things: expected 1 to {MOST_LOADS - 1}"
-    hint = "write a number in these limits, or delete carries" + (": then it carries one" if agent.is_robot else "")
-    return error("PML340", message, agent.span, hint)
+    tools = [] if carrier is None else [ref for ref in agent.has if ref.name in carrier.tools]
+    room = 1 if agent.carries is None else agent.carries
+    if not 1 <= room < MOST_LOADS:
+        message = f"{agent.name} carries {room} things: expected 1 to {MOST_LOADS - 1}"
+        hint = "write a number in these limits, or delete carries" + (": then it carries one" if agent.is_robot else "")
+        yield error("PML340", message, agent.span, hint)
+    elif len(tools) > 1:
+        message = f"{agent.name} has {tools[0].name} and {tools[1].name} mounted at the start: expected one tool"
+        yield error("PML340", message, tools[1].span, "delete one of them: another one is mounted by an event")
+    elif carrier is not None and carrier.held > room:
+        message = f"{agent.name} has {carrier.held} things at the start and room for {room}"
+        yield error("PML340", message, agent.span, f"write carries {carrier.held}, or delete some behind has")
 
 
-def _without(agent: Agent, known: Container[str]) -> Optional[Diagnostic]:
+def _without(agent: Agent, known: Container[str]) -> Iterator[Diagnostic]:
     """A number of things of who takes and gives none."""
     word = "has" if agent.carries is None else "carries"
-    if (agent.carries is None and not agent.has) or agent.name in known:
-        return None
-    what = ", ".join(ref.name for ref in agent.has) if agent.carries is None else agent.carries
-    message = f"{agent.name} {word} {what}, but does nothing that takes a thing"
-    hint = f'let it: event "load" … takes box, and can_do load; or delete {word}'
-    return warning("PML344", message, agent.span, hint)
+    if (agent.carries is not None or agent.has) and agent.name not in known:
+        what = ", ".join(ref.name for ref in agent.has) if agent.carries is None else agent.carries
+        message = f"{agent.name} {word} {what}, but does nothing that takes a thing"
+        hint = f'let it: event "load" … takes box, and can_do load; or delete {word}'
+        yield warning("PML344", message, agent.span, hint)
 
 
 def _carrier(carrier: Carrier) -> Iterator[Diagnostic]:

@@ -1,4 +1,5 @@
-"""Numbers with their unit behind them, as people write them: what times and lengths share."""
+"""Numbers with their unit behind them, as people write them: what times and lengths share, and lengths, which count
+metres: `12 m`, `80 cm`."""
 
 from __future__ import annotations
 
@@ -6,7 +7,8 @@ import re
 from fractions import Fraction
 from typing import Any, Callable, ClassVar, Mapping, NamedTuple, Optional, Type, TypeVar
 
-from pursue_gen.language.numbers import Decimal, Number, exact, read_number
+from pursue_gen.diagnostics import units
+from pursue_gen.language.numbers import Decimal, Number, decimal_text, exact, read_number
 
 _PART = re.compile(r"(\S+)\s+([a-z]+)")
 _Self = TypeVar("_Self", bound="Measured")
@@ -103,3 +105,43 @@ class Measured(Decimal):
 
     def __deepcopy__(self: _Self, memo: Any) -> _Self:
         return self
+
+
+# Lengths --------------------------------------------------------------------------------------------------------------
+
+_OTHERS = {
+    "metre": "m", "metres": "m", "meter": "m", "meters": "m",
+    "centimetre": "cm", "centimetres": "cm", "centimeter": "cm", "centimeters": "cm",
+}  # fmt: skip
+"""Other words for the units, which the reader answers with what to write."""
+
+
+def length_text(metres: Number) -> str:
+    """So many metres as one writes them: `12 m`, `0.125 m`."""
+    return f"{decimal_text(metres)} m"
+
+
+LENGTHS = Units("a length", {"cm": Fraction(1, 100), "m": 1}, _OTHERS, length_text, "12 m, 80 cm")
+"""What may stand behind a length."""
+
+
+class Length(Measured):
+    """A length with its unit behind it, in metres; one without is a plain number."""
+
+    __slots__ = ()
+    units: ClassVar[Units] = LENGTHS
+
+
+def metres(number: Number) -> str:
+    """A length in metres for people: `80 cm` as it was written, else `12 m`."""
+    return number.written if isinstance(number, Length) else length_text(number)
+
+
+def units_of_distance(number: Number, in_metres: bool) -> str:
+    """A distance in a sentence: `12 m`, or `12 units of distance`."""
+    return metres(number) if in_metres or isinstance(number, Length) else f"{units(number)} of distance"
+
+
+def unit_of_distance(in_metres: bool) -> str:
+    """What distances count, in the singular."""
+    return "metre" if in_metres else "unit of distance"

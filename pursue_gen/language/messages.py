@@ -11,11 +11,11 @@ from typing import FrozenSet, List, Optional, Sequence, Tuple
 from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
-from pursue_gen.language.kinds import KEYWORDS, MAY_BE_NAMES, RESERVED, STATEMENTS
+from pursue_gen.language.kinds import KEYWORDS, MAY_BE_NAMES, STATEMENTS
+from pursue_gen.language.names import proposal
 from pursue_gen.language.numbers import MOST_DIGITS, at_least, decimal_text, read_number
 from pursue_gen.language.similar import closest
 from pursue_gen.language.tokens import shown
-from pursue_gen.language.usable import proposal
 
 _SIGNS = {"COLON": "`:`", "COMMA": "`,`", "LPAR": "`(`", "RPAR": "`)`"}
 _OTHERS = {"NAME": "a name in quotes", "WORD": "a name", "NUMBER": "a number", "POSE": "a pose comment"}
@@ -153,7 +153,7 @@ def _hint(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
         label = f' label "{shown(" ".join(words))}"' if len(words) > 1 else ""
         return f'put the name in quotes where it is declared: {KEYWORDS[statement]} "{name}"{label}'
     if token.type == "NAME" and "WORD" in expected:
-        name = proposal(text.strip('"'), RESERVED)
+        name = proposal(text.strip('"'))
         return f"quotes stand only where a name is declared: write {shown(name)} without them"
     if statement in ("OBJECTIVE", "REACH_OBJECTIVE"):
         otherwise = _otherwise(chunk, index)
@@ -237,7 +237,7 @@ def name_meant(chunk: Sequence[Token], index: int) -> Tuple[str, Token]:
         plain = {"WORD", *MAY_BE_NAMES} - {"LABEL", "EXCEPT"}
         words += takewhile(lambda word: word.type in plain and word.line == words[0].line, chunk[index + 1 :])
     text = " ".join(words)
-    return (text if chunk[index - 1].type == "LABEL" else proposal(text, RESERVED)), words[-1]
+    return (text if chunk[index - 1].type == "LABEL" else proposal(text)), words[-1]
 
 
 def _stray(chunk: Sequence[Token], index: int) -> str:

@@ -3,6 +3,10 @@ of two that are fine alone, the generator must not make one text for two things.
 
 from __future__ import annotations
 
+import keyword
+import re
+import unicodedata
+from itertools import chain, count
 from typing import Container, Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, an, error
@@ -16,7 +20,12 @@ from pursue_gen.language.scenario import Ref, Scenario
 from pursue_gen.language.similar import Similar, closest
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.language.tokens import shown
-from pursue_gen.language.usable import LONGEST, fitting, proposal, reserved, well_formed
+
+GENERATED = frozenset("observer UI controllerObj controller simulator reachObj obj states".split())
+_FORM = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+LONGEST = 60
+"""Letters of a name: with what is added to it a name becomes a file name and a topic."""
+_PREFIXES = ("going_", "doing_")
 
 _LISTED_IN = {kind.declares: kind.listed_in for kind in STATEMENTS.values() if kind.declares}
 KINDS = tuple(_LISTED_IN)
@@ -27,6 +36,43 @@ _Stated = Tuple[Span, Sequence[Symbol]]
 
 _SOME = 12  # known names that a message lists
 _COMPARED = 200  # names in broken statements among which a similar one is looked for
+
+
+def well_formed(name: str) -> bool:
+    """True for a name that can stand in a ROS topic, Python and UPPAAL (whose own words get another name there)."""
+    return _FORM.fullmatch(name) is not None
+
+
+def reserved(name: str) -> str:
+    """Why a well-formed name cannot be used; the empty string: it can."""
+    if name in GENERATED:
+        return f"{name} is the name of a generated part of every mission"
+    if name in RESERVED:
+        return f"{name} is a word of the language and cannot be a name"
+    if keyword.iskeyword(name):
+        return f"{name} is a word of Python and cannot be a name"
+    if name.endswith("DONE"):
+        return f"{name} ends in DONE, as the words for the ends of actions do"
+    if name.startswith(_PREFIXES):
+        return f"{name} begins as the words for movements (going_…) and actions (doing_…) do"
+    return ""
+
+
+def fitting(name: str) -> str:
+    """A well-formed name like this one; it may be reserved, or too long."""
+    letters = unicodedata.normalize("NFKD", name)
+    plain = "".join(letter for letter in letters if not unicodedata.combining(letter))
+    changed = re.sub(r"[^A-Za-z0-9]+", "_", plain).strip("_")
+    return changed if well_formed(changed) else ("n_" + changed).rstrip("_")
+
+
+def proposal(name: str, taken: Container[str] = ()) -> str:
+    """A name like this one that the language accepts and that is not taken; if that is so, the name itself."""
+    start = (name if well_formed(name) else fitting(name[:LONGEST]))[:LONGEST]
+    while start.startswith(_PREFIXES):
+        start = fitting(start[len(_PREFIXES[0]) :])
+    numbered = (f"{start[: LONGEST - 6]}{number}" for number in count(1))
+    return next(word for word in chain([start], numbered) if not reserved(word) and word not in taken)
 
 
 def declared(scenario: Scenario, kind: str) -> Dict[str, Span]:
@@ -68,7 +114,7 @@ def check_references(scenario: Scenario, lost: FrozenSet[str] = frozenset()) -> 
     known = {kind: declared(scenario, kind) for kind in KINDS}
     similar = {kind: Similar(known[kind]) for kind in KINDS}
     taken = _taken(scenario)
-    meant = {proposal(name, RESERVED, taken) for kind in KINDS for name in known[kind] if not well_formed(name)}
+    meant = {proposal(name, taken) for kind in KINDS for name in known[kind] if not well_formed(name)}
     for kind, ref in _uses(scenario):
         name = ref.name
         if name in known[kind] or name in lost or name in meant:
@@ -106,14 +152,14 @@ def _instead(
     if elsewhere:
         another = f'declare {an(kind)} with another name: {kind.lower()} "…"'
         return f"write the name of {an(kind)}: {some}" if some else another
-    better = proposal(name, RESERVED, taken)
+    better = proposal(name, taken)
     declare = "declare it" if better == name else "declare it with another name"
     return f'{declare}: {kind.lower()} "{better}", or use one of: ' + (some or "(none yet)")
 
 
 def _usable(name: str, taken: Container[str]) -> str:
     """A declared name, or what is proposed for it if it is malformed."""
-    return name if well_formed(name) else proposal(name, RESERVED, taken)
+    return name if well_formed(name) else proposal(name, taken)
 
 
 def _taken(scenario: Scenario) -> FrozenSet[str]:
@@ -146,18 +192,18 @@ def _uses(scenario: Scenario) -> Iterator[Tuple[str, Ref]]:
 def _unfit(kind: str, name: str, span: Span, taken: Container[str]) -> Optional[Diagnostic]:
     """Why a name cannot be used; None: it can."""
     if not well_formed(name):
-        hint = "use letters, digits and _, a letter first, for example " + proposal(name, RESERVED, taken)
+        hint = "use letters, digits and _, a letter first, for example " + proposal(name, taken)
         if kind in LABELLED and not why_no_label(name):
-            better = proposal(name, RESERVED, taken)
+            better = proposal(name, taken)
             hint += f'; people can read it as a label: {kind.lower()} "{better}" label "{name}"'
         message = f'"{shown(name, 60)}" cannot become the name of a ROS topic or a Python name'
         return error("PML101", message, span, hint if name else "give it a name")
     if len(name) > LONGEST:
         return error("PML101", f"this name is longer than {LONGEST} letters", span, "choose a shorter name")
-    why = reserved(name, RESERVED)
+    why = reserved(name)
     if not why:
         return None
-    return error("PML102", why, span, f"choose another name, for example {proposal(name, RESERVED, taken)}")
+    return error("PML102", why, span, f"choose another name, for example {proposal(name, taken)}")
 
 
 def _again(name: str, kind: str, span: Span, first_kind: str, first: Span) -> Diagnostic:

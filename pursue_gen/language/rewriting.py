@@ -15,7 +15,7 @@ from lark import Token
 from pursue_gen.diagnostics import Span, error
 from pursue_gen.language.document import Document, Edit, behind, written
 from pursue_gen.language.kinds import KEYWORDS, STATEMENTS
-from pursue_gen.language.lengths import length_text
+from pursue_gen.language.measures import length_text
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.occurrences import are_names
 from pursue_gen.language.poses import end_of_poses, pose_text

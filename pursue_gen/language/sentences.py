@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Dict, List, Optional
 
 from pursue_gen.diagnostics import listed
-from pursue_gen.language.lengths import unit_of_distance
+from pursue_gen.language.measures import unit_of_distance
 from pursue_gen.language.numbers import Number, Window
 from pursue_gen.language.scenario import Agent, Event, Scenario, StatedObjective
 from pursue_gen.language.times import in_units, window_text, words_for

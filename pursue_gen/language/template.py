@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from typing import Any, Callable, Dict, Iterable, Iterator, Mapping, NamedTuple, Sequence, Tuple
 
-from pursue_gen.language.conditions import Condition, Who, condition_text, some_text
+from pursue_gen.language.conditions import Condition, Who, condition_text, read_condition, read_some, some_text
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.times import window_text, written_time
 from pursue_gen.language.tokens import bare
@@ -69,6 +69,10 @@ def names_text(refs: Iterable[Ref]) -> str:
     return ", ".join(map(name_text, refs))
 
 
+def _event_or_condition(reader: TreeReader, tree: Any) -> Any:
+    return reader.ref(tree) if tree.data == "ref" else read_condition(reader, tree)
+
+
 def event_or_condition_text(what: Any) -> str:
     """The name of an event, or a condition as it is written."""
     return what.name if isinstance(what, Ref) else condition_text(what)
@@ -86,7 +90,7 @@ FILLINGS: Mapping[str, Filling] = {
     "things": Filling("refs", TreeReader.refs, names_text, "thing"),
     "events": Filling("refs", TreeReader.refs, names_text, "event"),
     "event or condition": Filling(
-        "(ref | condition)", TreeReader.event_or_condition, event_or_condition_text, "event", is_condition=True
+        "(ref | condition)", _event_or_condition, event_or_condition_text, "event", is_condition=True
     ),
     "name": Filling("NAME", lambda _, token: bare(token), '"{}"'.format),
     "number": Filling("NUMBER", TreeReader.number),
@@ -95,9 +99,9 @@ FILLINGS: Mapping[str, Filling] = {
     "time": Filling("NUMBER", TreeReader.time, written_time),
     "count": Filling("NUMBER", TreeReader.count),
     "window": Filling("window", TreeReader.window, window_text),
-    "some": Filling("some", TreeReader.some, some_text, "agent", ("of",)),
-    "condition": Filling("condition", TreeReader.condition, condition_text, is_condition=True),
-    "bracketed": Filling("_plain", TreeReader.condition, lambda one: f"({condition_text(one)})", is_condition=True),
+    "some": Filling("some", read_some, some_text, "agent", ("of",)),
+    "condition": Filling("condition", read_condition, condition_text, is_condition=True),
+    "bracketed": Filling("_plain", read_condition, lambda one: f"({condition_text(one)})", is_condition=True),
     "bool": Filling("(TRUE | FALSE)", lambda _, token: token.type == "TRUE", lambda value: str(value).lower()),
     "is": Filling(
         "(IS_TRUE | IS_FALSE)", lambda _, token: token.type == "IS_TRUE", lambda value: f"is_{str(value).lower()}"

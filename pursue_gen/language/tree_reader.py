@@ -1,4 +1,4 @@
-"""Names, numbers and conditions from the trees of statements, and what is wrong with them."""
+"""Names and numbers from the trees of statements, and what is wrong with them."""
 
 from __future__ import annotations
 
@@ -10,23 +10,7 @@ from typing import Any, List, Mapping, Optional, Tuple
 from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
-from pursue_gen.language.conditions import (
-    AllOf,
-    AnyOf,
-    At,
-    AtMostOf,
-    Atom,
-    Condition,
-    Doing,
-    EventOrCondition,
-    Has,
-    Holds,
-    Not,
-    OnWay,
-    Who,
-)
-from pursue_gen.language.lengths import LENGTHS, Length
-from pursue_gen.language.measures import Units
+from pursue_gen.language.measures import LENGTHS, Length, Units
 from pursue_gen.language.numbers import MOST_DIGITS, Number, decimal_text, exact, is_fine, read_number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.times import TIMES, Time, has_unit
@@ -178,54 +162,6 @@ class TreeReader:
         """The numbers of `5 to 8`; one alone has no second one."""
         low, _, high = tree.children
         return self.time(low), None if high is None else self.time(high)
-
-    def condition(self, tree: Any) -> Condition:
-        """A condition."""
-        kind, children = tree.data, tree.children
-        if kind == "negation":
-            return Not(self.condition(children[0]))
-        if kind in ("all_of", "any_of"):
-            return (AllOf if kind == "all_of" else AnyOf)(tuple(map(self.condition, children)))
-        if kind == "holds":
-            return self._holds(self.ref(children[0]), children[1])
-        if kind == "few" and len(children) > 2:
-            number, refs, value = children
-            return AtMostOf(self.count(number), tuple(self._holds(ref, value) for ref in self.refs(refs)))
-        if kind == "few":
-            most, everybody = self.some(children[0])
-            if children[1].data == "at_one":
-                places = [self.ref(child) for child in children[1].children]
-                return AtMostOf(most, tuple(At(who, place) for who in everybody for place in places))
-            return AtMostOf(most, tuple(self._so(who, children[1]) for who in everybody))
-        first = children[0].children[0]
-        named = not isinstance(first, Token)
-        who = Who(self.ref(first)) if named else Who(None, robots=len(children[0].children) > 1)
-        condition = self._so(who, children[1])
-        return condition if named or first.type != "NO" else Not(condition)
-
-    def some(self, tree: Any) -> Tuple[int, Tuple[Who, ...]]:
-        """The number in `2 robots`, `2 agents` or `2 of cart1, cart2, cart3`, and of whom it is one."""
-        number, *who = tree.children
-        if who and not isinstance(who[0], Token):
-            return self.count(number), tuple(map(Who, self.refs(who[0])))
-        return self.count(number), (Who(None, robots=bool(who) and who[0].type != "AGENTS"),)
-
-    def _so(self, who: Who, tree: Any) -> Atom:
-        """What a predicate says of somebody."""
-        refs = [self.ref(child) for child in tree.children if child is not None]
-        if tree.data in ("at", "doing"):
-            return (At if tree.data == "at" else Doing)(who, *refs)
-        if tree.data == "has":
-            return Has(who, *refs)
-        origin, target = refs or (None, None)
-        return OnWay(who, origin, target, tree.data == "between")
-
-    def _holds(self, state: Ref, value: Token) -> Holds:
-        return Holds(state, value.type == "IS_TRUE")
-
-    def event_or_condition(self, tree: Any) -> EventOrCondition:
-        """The event that is named, or the condition."""
-        return self.ref(tree) if tree.data == "ref" else self.condition(tree)
 
 
 def _blanks(text: str) -> str:

@@ -16,13 +16,12 @@ from typing import List, Optional, Tuple
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.document import Document, Edit, edited
 from pursue_gen.language.for_each import without_owners
-from pursue_gen.language.lines import Lines
 from pursue_gen.language.network_names import safety_objective
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Patrol, Scenario
 from pursue_gen.language.sentences import periods_found
 from pursue_gen.language.times import in_units, written_time
-from pursue_gen.language.tokens import end_of
+from pursue_gen.language.tokens import Lines, end_of
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.decided import strategy_of
 from pursue_gen.solving.options import DEFAULT, SolveOptions

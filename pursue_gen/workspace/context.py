@@ -28,8 +28,7 @@ from typing import Any, Dict, Mapping, Optional, Sequence
 
 from pursue_gen import __version__
 from pursue_gen.drawing.floor import Floor
-from pursue_gen.language.doors import doors_of
-from pursue_gen.language.lifts import rides_of
+from pursue_gen.language.lifts import doors_of, rides_of
 from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.partition import SubStrategy
 from pursue_gen.tga.network import Objective

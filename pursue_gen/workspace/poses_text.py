@@ -9,8 +9,7 @@ from typing import Any, Dict, List, Mapping, Sequence
 
 from pursue_gen import __version__
 from pursue_gen.language.behaviour import robots_at
-from pursue_gen.language.doors import doors_of
-from pursue_gen.language.lifts import WAITS_AT, rides_of
+from pursue_gen.language.lifts import WAITS_AT, doors_of, rides_of
 from pursue_gen.language.scenario import Lift, Pose, Scenario
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.workspace.spots import Placing, Table

@@ -8,8 +8,7 @@ from math import ceil
 from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 from pursue_gen.drawing.floor import Floor
-from pursue_gen.language.doors import doors_of
-from pursue_gen.language.lifts import rides_of
+from pursue_gen.language.lifts import doors_of, rides_of
 from pursue_gen.language.scenario import Connection, Scenario
 from pursue_gen.language.sentences import objective_sentence, objective_words
 from pursue_gen.language.times import unit_name

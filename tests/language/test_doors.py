@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from pursue_gen.explanation.repairs import repairs
 from pursue_gen.language import parse
 from pursue_gen.language.checks import check_reading
-from pursue_gen.language.doors import doors_of
+from pursue_gen.language.lifts import doors_of
 from pursue_gen.language.parser import read
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import Lost

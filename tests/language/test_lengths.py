@@ -17,7 +17,7 @@ from pursue_gen.language import parse
 from pursue_gen.language.checks import check, check_reading
 from pursue_gen.language.document import edited
 from pursue_gen.language.formatter import format_text
-from pursue_gen.language.lengths import LENGTHS, Length, length_text
+from pursue_gen.language.measures import LENGTHS, Length, length_text
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.parser import read
 from pursue_gen.language.rewriting import Rewriting

@@ -10,10 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.language import parse
-from pursue_gen.language.kinds import RESERVED
-from pursue_gen.language.names import check_collisions
+from pursue_gen.language.names import GENERATED, check_collisions, proposal
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.usable import GENERATED, proposal
 
 from .texts import STATEMENTS, findings, text
 
@@ -60,9 +58,9 @@ def test_the_proposed_name_is_accepted(name: str) -> None:
 
 @given(st.text(min_size=1, max_size=70).filter(lambda name: not set('"\n\r') & set(name)))
 def test_whatever_the_name_its_proposal_is_accepted(name: str) -> None:
-    proposed = proposal(name, RESERVED, ("a", "b", "work", "hand", "rest", "tired", "bot", "man"))
+    proposed = proposal(name, ("a", "b", "work", "hand", "rest", "tired", "bot", "man"))
     assert findings(text(rule=RULE.replace("order", proposed))) == []
-    assert proposal(proposed, RESERVED) == proposed
+    assert proposal(proposed) == proposed
 
 
 def test_a_proposal_is_no_name_that_stands_for_something_else() -> None:

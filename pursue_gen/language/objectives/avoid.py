@@ -32,7 +32,7 @@ class Avoid(Safety):
 
     @classmethod
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Safety:
-        what = reader.event_or_condition(children[0])
+        (what,) = cls.template.read(reader, children).values()
         return cls(what, **at) if isinstance(what, Ref) else Always(what, False, **at)
 
     def sentence(self, shown: Callable[[str], str]) -> str:

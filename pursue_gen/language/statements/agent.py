@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import ceil, floor
 from typing import Any, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, warning
-from pursue_gen.language.lengths import metres
-from pursue_gen.language.numbers import Number, Window, exact, is_fine, window_of
+from pursue_gen.language.measures import metres
+from pursue_gen.language.numbers import Number, Window, exact, is_fine, tenths_above, tenths_below, window_of
 from pursue_gen.language.refs import Ref, twice
 from pursue_gen.language.statements.base import Labelled
 from pursue_gen.language.template import Filling, Template, name_text
@@ -166,7 +165,7 @@ class Agent(Labelled):
         earliest, latest = window_of(exact(distance * (self.mobile or 0)), None)
         if self.speed is None or is_fine(earliest):
             return earliest, latest
-        return exact(Fraction(floor(earliest * 10), 10)), exact(Fraction(ceil(latest * 10), 10))
+        return tenths_below(earliest), tenths_above(latest)
 
     @property
     def kind_words(self) -> str:

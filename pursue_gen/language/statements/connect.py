@@ -74,9 +74,7 @@ class Connection(ForSome):
 
     def names(self) -> Iterator[Tuple[str, Ref]]:
         yield from (("POI", Ref(name, span)) for name, span in zip((self.a, self.b), self.ends))
-        yield from (("agent", ref) for ref in (*self.only_for, *self.not_for))
-        yield from (("door", ref) for ref in self.through)
-        yield from (("lift", ref) for ref in (self.by,) if ref is not None)
+        yield from super().names()
 
     @property
     def what(self) -> str:

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import ceil, floor
 from typing import Any, Callable, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, warning
 from pursue_gen.language.conditions import Condition, condition_words
-from pursue_gen.language.numbers import Number, Window, exact, is_fine, window_of
+from pursue_gen.language.numbers import Number, Window, exact, is_fine, tenths_above, tenths_below, window_of
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import Labelled, check_window
 from pursue_gen.language.template import Filling, Template
@@ -32,10 +31,7 @@ def _read_counted(reader: TreeReader, tree: Any) -> Tuple[Ref, int]:
     return reader.ref(name), 1 if number is None else reader.count(number)
 
 
-def counted_text(thing: Optional[Ref], count: int) -> str:
-    """So many of a thing as they are written; "" for none."""
-    if thing is None:
-        return ""
+def _counted_text(thing: Ref, count: int) -> str:
     return thing.name if count == 1 else f"{count} {thing.name}"
 
 
@@ -105,7 +101,7 @@ class Event(Labelled):
         " [duration {duration,latest:window=6}] [may_stop] [in {split:count=4} parts] [takes {takes,taken:counted}]"
         " [gives {gives,given:counted}] [mounts {mounts:thing}] [needs {needs:thing}] [at_most {at_most:count=2} times]"
         " [only_if {only_if:condition=open is_true}]",
-        counted=Filling("counted", _read_counted, counted_text, "thing", rules="counted: [NUMBER] ref"),
+        counted=Filling("counted", _read_counted, _counted_text, "thing", rules="counted: [NUMBER] ref"),
     )
     note = (
         'all but the name is optional; or: duration 6 to 9; behind the name: label "do the work", on_order; behind the '
@@ -161,7 +157,7 @@ class Event(Labelled):
         low, high = (Fraction(end) / parts for end in whole)
         if is_fine(low) and is_fine(high):
             return exact(low), exact(high)
-        return exact(Fraction(floor(low * 10), 10)), exact(Fraction(ceil(high * 10), 10))
+        return tenths_below(low), tenths_above(high)
 
     @property
     def load_words(self) -> str:

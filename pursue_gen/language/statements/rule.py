@@ -21,9 +21,9 @@ class _Two:
     second: RuleBody
     span: Span = NOWHERE
     word: ClassVar[str]
-    between = ""
+    between: ClassVar[str] = ""
     """The same for people; "": it is that word."""
-    behind = ""
+    behind: ClassVar[str] = ""
     """What people read behind the two."""
 
     @property

@@ -43,8 +43,8 @@ def import_(
     """
     from pursue_gen.files import check_new, write_texts
     from pursue_gen.language.checks import check, checked
+    from pursue_gen.language.names import fitting
     from pursue_gen.language.parser import parse
-    from pursue_gen.language.usable import fitting
     from pursue_gen.tools.importing.building import read_building
     from pursue_gen.tools.importing.plan import floor_plan
     from pursue_gen.tools.importing.scenario_text import chosen, scenario_text

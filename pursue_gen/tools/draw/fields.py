@@ -9,8 +9,7 @@ from typing import Any, List, Mapping, Sequence
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language.labels import why_no_label
-from pursue_gen.language.lengths import LENGTHS
-from pursue_gen.language.measures import Units
+from pursue_gen.language.measures import LENGTHS, Units
 from pursue_gen.language.numbers import read_number
 from pursue_gen.language.times import TIMES, has_unit
 

@@ -7,20 +7,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import count
-from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple, Type
 
 from pursue_gen.diagnostics import NOWHERE, PursueError, error
 from pursue_gen.language.draft import Draft, rename
 from pursue_gen.language.formatter import format_text, formatted
-from pursue_gen.language.kinds import DECLARED, RESERVED, STATEMENTS
-from pursue_gen.language.names import KINDS
+from pursue_gen.language.kinds import DECLARED, STATEMENTS
+from pursue_gen.language.names import KINDS, reserved
 from pursue_gen.language.occurrences import GROUP
 from pursue_gen.language.poses import read_poses
 from pursue_gen.language.rewriting import parts_in, parts_of
-from pursue_gen.language.statements.agent import SIZE
+from pursue_gen.language.statements.base import StatementKind
 from pursue_gen.language.syntax import Statement
+from pursue_gen.language.template import FILLINGS, Filling, Hole
 from pursue_gen.language.tokens import bare
-from pursue_gen.language.usable import reserved
 from pursue_gen.language.word import HOLE, Form
 from pursue_gen.tools.draw import fields
 from pursue_gen.tools.draw.fields import Values, refused
@@ -150,21 +150,36 @@ Parts = Dict[str, Optional[str]]
 """The word that begins a part of a statement → what stands behind it; None: it is left out."""
 
 
-def _text(part: str, read: Callable[[Values, str], str]) -> Callable[[Values, str], Parts]:
-    """A field that is left out where it is empty."""
-    return lambda values, field: {part: read(values, field) if values.get(field) else None}
+def _field(hole: Hole, behind: str) -> Callable[[Values, str], Parts]:
+    """The field of what fills a hole of a template: it is left out where it is empty. `behind`: the words behind it."""
+    part, filling = hole.begins, hole.filling
+    if filling.rule == part:  # a flag
+        return lambda values, field: {part: "" if fields.is_set(values, field) else None}
+    if filling == FILLINGS["events"]:
+        return lambda values, field: {part: ", ".join(fields.names_of(values, field)) or None}
+    read = fields.name_of if filling.rule in ("ref", "counted") else _READ.get(filling, fields.text_of)
+    return lambda values, field: {part: read(values, field) + behind if values.get(field) else None}
+
+
+_READ: Mapping[Filling, Callable[[Values, str], str]] = {
+    FILLINGS["name"]: fields.label_of,
+    FILLINGS["window"]: fields.window_of,
+    FILLINGS["metres"]: fields.length_of,
+    FILLINGS["count"]: fields.number_of,
+}
+"""What reads a field, by what fills its hole."""
+
+
+def _optional(kind: Type[StatementKind]) -> Dict[str, Callable[[Values, str], Parts]]:
+    """The fields of all that may be left out in a statement."""
+    pieces = [(piece.holes[0], piece.text.partition("{}")[2]) for piece in kind.template.pieces if piece.optional]
+    names = {"split": "parts"}
+    wanted = ((hole.fields[0], hole, behind) for hole, behind in pieces if hole.fields[0] not in kind.aside)
+    return {names.get(field, field): _field(hole, behind) for field, hole, behind in wanted}
 
 
 def _needed(part: str, read: Callable[[Values, str], str]) -> Callable[[Values, str], Parts]:
     return lambda values, field: {part: read(values, field)}
-
-
-def _tick(part: str) -> Callable[[Values, str], Parts]:
-    return lambda values, field: {part: "" if fields.is_set(values, field) else None}
-
-
-def _list(part: str) -> Callable[[Values, str], Parts]:
-    return lambda values, field: {part: ", ".join(fields.names_of(values, field)) or None}
 
 
 def _kind(values: Values, field: str) -> Parts:
@@ -186,50 +201,16 @@ def _pace(part: str, other: str) -> Callable[[Values, str], Parts]:
     )
 
 
-def _times(values: Values, field: str) -> Parts:
-    return {"AT_MOST": f"{fields.number_of(values, field)} times" if values.get(field) else None}
-
-
-def _parts(values: Values, field: str) -> Parts:
-    return {"IN": f"{fields.number_of(values, field)} parts" if values.get(field) else None}
-
-
-_WHOM = {"only_for": _text("FOR", fields.text_of), "not_for": _text("EXCEPT", fields.text_of)}
-
 _FIELDS: Mapping[str, Mapping[str, Callable[[Values, str], Parts]]] = {
-    "POI": {"label": _text("LABEL", fields.label_of), **_WHOM},
-    "CONNECT": {
-        "distance": _needed("DISTANCE", fields.length_of),
-        "one_way": _tick("ONE_WAY"),
-        **_WHOM,
-        "only_if": _text("ONLY_IF", fields.text_of),
-    },
-    "EVENT": {
-        "label": _text("LABEL", fields.label_of),
-        "collaborative": _tick("COLLABORATIVE"),
-        "together": _tick("TOGETHER"),
-        "location": _text("LOCATION", fields.name_of),
-        "duration": _text("DURATION", fields.window_of),
-        "may_stop": _tick("MAY_STOP"),
-        "parts": _parts,
-        "takes": _text("TAKES", fields.name_of),
-        "gives": _text("GIVES", fields.name_of),
-        "mounts": _text("MOUNTS", fields.name_of),
-        "needs": _text("NEEDS", fields.name_of),
-        "at_most": _times,
-        "only_if": _text("ONLY_IF", fields.text_of),
-    },
+    "POI": _optional(STATEMENTS["POI"]),
+    "CONNECT": {**_optional(STATEMENTS["CONNECT"]), "distance": _needed("DISTANCE", fields.length_of)},
+    "EVENT": _optional(STATEMENTS["EVENT"]),
     "AGENT": {
-        "label": _text("LABEL", fields.label_of),
+        **_optional(STATEMENTS["AGENT"]),
         "kind": _kind,
         "mobile": _pace("MOBILE", "SPEED"),
         "speed": _pace("SPEED", "MOBILE"),
-        **{word: _text(word.upper(), fields.length_of) for word in SIZE},
-        "carries": _text("CARRIES", fields.number_of),
-        "has": _text("HAS", fields.text_of),
         "location": _needed("LOCATION", fields.name_of),
-        "can_do": _list("CAN_DO"),
-        "reacts_to": _list("REACTS_TO"),
     },
 }
 """The fields of each kind of statement, and the parts that they are."""
@@ -330,7 +311,7 @@ def _new_name(document: Draft, values: Values, stem: str) -> str:
     if not values.get("name"):
         return next(f"{stem}{number}" for number in count(1) if f"{stem}{number}" not in taken)
     name = fields.name_of(values, "name")
-    why = reserved(name, RESERVED) or (f"{name} is taken" if name in taken else "")
+    why = reserved(name) or (f"{name} is taken" if name in taken else "")
     if why:
         raise refused(why, "choose another name")
     return name

@@ -9,8 +9,8 @@ from typing import Any, Callable, Dict, Mapping, Optional
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing.floor_picture import CLOSE, read_floor
 from pursue_gen.drawing.ground import read_ground
-from pursue_gen.language.lines import plain
 from pursue_gen.language.syntax import MOST_LETTERS
+from pursue_gen.language.tokens import plain
 from pursue_gen.tools.draw import fields, storage
 from pursue_gen.tools.draw.jobs import Jobs
 from pursue_gen.tools.draw.operations import ANYBODY, change
@@ -105,6 +105,6 @@ def _text(values: Mapping[str, Any]) -> str:
 
 def file_for(scenario: Optional[Path], floor: Optional[Path]) -> Path:
     """The scenario's file, where none is named: called like the map, in the present folder."""
-    from pursue_gen.language.usable import fitting
+    from pursue_gen.language.names import fitting
 
     return scenario or Path(f"{fitting(floor.stem) if floor is not None else 'my_floor'}.pur")

@@ -9,8 +9,8 @@ from typing import Tuple
 from pursue_gen.diagnostics import PursueError, error, usage_error
 from pursue_gen.files import shell_quoted, write_texts
 from pursue_gen.language.formatter import Layout, replace_text
-from pursue_gen.language.lines import plain
 from pursue_gen.language.parser import MOST_BYTES, read_text
+from pursue_gen.language.tokens import plain
 from pursue_runtime.named_files import read_all
 
 NOTHING = ""

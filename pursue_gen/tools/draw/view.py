@@ -11,7 +11,7 @@ from pursue_gen.drawing.look import agent_looks, mark
 from pursue_gen.language.document import Document
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.kinds import STATEMENTS
-from pursue_gen.language.lengths import unit_of_distance
+from pursue_gen.language.measures import unit_of_distance
 from pursue_gen.language.names import KINDS
 from pursue_gen.language.occurrences import GROUP
 from pursue_gen.language.rewriting import parts_in, parts_of

@@ -9,9 +9,8 @@ from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Option
 
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.language.formatter import format_text
-from pursue_gen.language.kinds import RESERVED
+from pursue_gen.language.names import proposal
 from pursue_gen.language.similar import closest
-from pursue_gen.language.usable import proposal
 from pursue_gen.tools.importing.building import Building
 from pursue_gen.tools.importing.plan import FloorPlan, Node, RobotStart, Stop, Track, mutex_of
 
@@ -112,7 +111,7 @@ class _Writer:
         return f"{name}_{level}" if several else name
 
     def _name(self, title: str) -> str:
-        name = proposal(title, RESERVED, self._taken)
+        name = proposal(title, self._taken)
         self._taken.add(name)
         return name
 

@@ -20,8 +20,7 @@ from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Set, 
 from pursue_gen.diagnostics import Diagnostic, PursueError, Span, error, usage_error
 from pursue_gen.files import compose_yaml, read_text, span_of
 from pursue_gen.language.formatter import format_text
-from pursue_gen.language.kinds import RESERVED
-from pursue_gen.language.usable import proposal
+from pursue_gen.language.names import proposal
 from pursue_gen.tools.importing.scenario_text import label_text, one_line, told_apart
 from pursue_runtime.bounded import DATA, BadText, node_value
 
@@ -358,7 +357,7 @@ def _named(titles: Sequence[str], taken: Set[str]) -> List[str]:
     """Names that the language accepts, each once."""
     found: List[str] = []
     for title in titles:
-        found.append(proposal(title, RESERVED, taken))
+        found.append(proposal(title, taken))
         taken.add(found[-1])
     return found
 

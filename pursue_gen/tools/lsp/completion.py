@@ -215,31 +215,27 @@ def _words(place: _Place, expected: FrozenSet[str], grouped: bool) -> Iterator[C
         return
     span = (place.start, place.end)
     names_hide = set(MAY_BE_NAMES) if "WORD" in expected else set()
-    kinds = kinds_behind(place.behind)
-    quantified = grouped and [token.type for token in body_of(place.behind)[:1]] == ["RULE"]
-    if set(SUBJECTS) <= set(kinds) and place.behind[-1].type not in ("COMMA", "OF"):
+    kinds, last, ends = kinds_behind(place.behind), place.behind[-1].type, [one.type for one in place.behind[-2:]]
+    in_rule = grouped and [token.type for token in body_of(place.behind)[:1]] == ["RULE"]
+    in_condition = grouped and condition_start(place.behind) is not None
+    if set(SUBJECTS) <= set(kinds) and last not in ("COMMA", "OF"):
         names_hide -= {"ANY", "NO", "AT_MOST", *(("ALL", "NONE") if grouped else ())}
-    elif quantified and kinds == ("event",):
+    elif in_rule and kinds == ("event",):
         names_hide -= {"ANY", "ALL"}
-    elif grouped and condition_start(place.behind) is not None and place.behind[-1].type in ("AT", "DOING"):
+    elif in_condition and last in ("AT", "DOING"):
         names_hide.discard("ANY")
-    elif (
-        GROUP in kinds
-        or [token.type for token in place.behind[-2:]] == ["NUMBER", "OF"]
-        or (kinds == ("agent",) and place.behind[-1].type in ("FOR", "EXCEPT"))
-    ):
+    elif GROUP in kinds or ends == ["NUMBER", "OF"] or (kinds == ("agent",) and last in ("FOR", "EXCEPT")):
         names_hide.discard("ROBOTS")
     elif place.behind[0].type == "FOR" and not body_of(place.behind):
         names_hide = set()
-    if [token.type for token in place.behind[-2:]] == ["OBJECTIVE", "COLON"]:
+    if ends == ["OBJECTIVE", "COLON"]:
         names_hide -= {"ALWAYS", "AT_LEAST", "ESCORT", "PATROL", "PLACE", "WAY"}
-    if [token.type for token in place.behind[-2:]] == ["ASSUME", "COLON"]:
+    if ends == ["ASSUME", "COLON"]:
         names_hide.discard("AT_MOST")
-    if place.behind[-1].type == "BY":
+    if last == "BY":
         names_hide.discard("ANY")
-    quantified = quantified or (grouped and condition_start(place.behind) is not None)
-    by_any = grouped and [token.type for token in place.behind[-2:]] == ["BY", "ANY"]
-    if by_any or (quantified and place.behind[-1].type in ("ANY", "ALL", "NONE")):
+    by_any = grouped and ends == ["BY", "ANY"]
+    if by_any or ((in_rule or in_condition) and last in ("ANY", "ALL", "NONE")):
         yield Completion("of", "of", "OF", "word", *span, about=MEANINGS["OF"])
     for token, word in KEYWORDS.items():
         if token == "TOGETHER" and "COLLABORATIVE" in expected:
@@ -249,7 +245,7 @@ def _words(place: _Place, expected: FrozenSet[str], grouped: bool) -> Iterator[C
             yield Completion(word, word, token, "word", *span, about=MEANINGS[token])
     if "NUMBER" in expected:
         yield Completion("1", "${1:1}", "NUMBER", "value", *span, "a number", snippet=True)
-    if "NAME" in expected and place.behind[-1].type == "LABEL":
+    if "NAME" in expected and last == "LABEL":
         yield Completion('"…"', '"${1:what people read}"', "NAME", "value", *span, "what people read", snippet=True)
     elif "NAME" in expected and place.behind[0].type in DECLARED:
         example = _EXAMPLES[DECLARED[place.behind[0].type]]

@@ -10,12 +10,12 @@ from pursue_gen.diagnostics import Diagnostic, PursueError
 from pursue_gen.language.behaviour import destinations_from
 from pursue_gen.language.document import Edit, behind, rank, written
 from pursue_gen.language.draft import Draft, rename
-from pursue_gen.language.kinds import MAY_BE_NAMES, RESERVED, STATEMENTS
+from pursue_gen.language.kinds import MAY_BE_NAMES, STATEMENTS
+from pursue_gen.language.names import proposal, well_formed
 from pursue_gen.language.occurrences import Occurrence
 from pursue_gen.language.poses import robots_in
 from pursue_gen.language.syntax import Statement
 from pursue_gen.language.tokens import bare, end_of, start_of
-from pursue_gen.language.usable import proposal, well_formed
 from pursue_gen.tools.lsp.fixes_syntax import Proposals
 
 _EXAMPLE = re.compile(r"for example (\w+)")
@@ -59,7 +59,7 @@ def unknown_name(document: Draft, finding: Diagnostic, part: Statement, at: int)
         shortest = _SHORTEST[occurrence.kind]
         if not elsewhere and shortest and (places or "{place}" not in shortest):
             statement = shortest.format(name=occurrence.name, place=next(iter(places), ""))
-            if proposal(occurrence.name, RESERVED) == occurrence.name:
+            if proposal(occurrence.name) == occurrence.name:
                 yield f"Declare it: {statement}", (document.inserted(statement),)
 
 
@@ -116,8 +116,6 @@ def connect_island(document: Draft, finding: Diagnostic, part: Statement, at: in
 
 def give_event(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
     """Lets an agent do the event: robots first."""
-    if part.name is None:
-        return
     event = bare(part.name)
     agents = [agent for agent in document.statements if agent.kind == "AGENT" and agent.name is not None]
     for agent in sorted(agents, key=lambda a: not a.first("CONTROLLABLE"))[:_MOST]:
@@ -132,8 +130,6 @@ def use_event(document: Draft, finding: Diagnostic, part: Statement, at: int) ->
 
 def find_partner(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
     """Lets another agent react to the event, or makes it one that needs no partner."""
-    if part.name is None:
-        return
     event = bare(part.name)
     doers = {agent.name for agent in document.scenario.doers(event)}
     others = [a for a in document.statements if a.kind == "AGENT" and a.name is not None and bare(a.name) not in doers]

@@ -6,7 +6,7 @@ from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.language.assumptions import NUMBERED
 from pursue_gen.language.document import Edit, behind, written
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.lengths import LENGTHS
+from pursue_gen.language.measures import LENGTHS
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.statements.event import MOST_TIMES
 from pursue_gen.language.syntax import Statement

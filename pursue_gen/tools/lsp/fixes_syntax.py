@@ -10,11 +10,11 @@ from lark import Token
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.language.document import Edit, behind, written
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.kinds import DECLARED, KEYWORDS, MAY_BE_NAMES, RESERVED
+from pursue_gen.language.kinds import DECLARED, KEYWORDS, MAY_BE_NAMES
 from pursue_gen.language.messages import QUOTES, name_meant
+from pursue_gen.language.names import proposal
 from pursue_gen.language.syntax import Statement, accepts
 from pursue_gen.language.tokens import bare, end_of, start_of
-from pursue_gen.language.usable import proposal
 
 Proposals = Iterator[Tuple[str, Tuple[Edit, ...]]]
 """What each would do, for the person, and the edits that do it; the likeliest comes first."""
@@ -52,7 +52,7 @@ def unexpected(document: Draft, finding: Diagnostic, part: Statement, at: int) -
     elif "NAME" in expected and token.type == "STRAY":
         yield from _straight_quotes(document, at)
     elif "WORD" in expected and token.type == "NAME":
-        word = proposal(bare(token), RESERVED)
+        word = proposal(bare(token))
         yield f"Write {word} without quotes", (Edit(at, end_of(token), word),)
     elif "COLON" in expected:
         yield "Add the missing :", (behind(part.tokens[wrong - 1], ":"),)

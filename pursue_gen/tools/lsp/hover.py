@@ -16,7 +16,7 @@ from pursue_gen.language.draft import Draft
 from pursue_gen.language.for_each import ranges_of
 from pursue_gen.language.kinds import KEYWORDS, MEANINGS, STATEMENTS
 from pursue_gen.language.labels import in_markdown, markdown
-from pursue_gen.language.lengths import unit_of_distance, units_of_distance
+from pursue_gen.language.measures import unit_of_distance, units_of_distance
 from pursue_gen.language.numbers import Number, exact, window_of
 from pursue_gen.language.occurrences import GROUP, MEMBERS, VARIABLE, Occurrence
 from pursue_gen.language.scenario import Agent, Event, Poi, Ref, Rule, Scenario, Window

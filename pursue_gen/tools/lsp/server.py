@@ -4,27 +4,27 @@ from __future__ import annotations
 
 import logging
 import os
+import re
 import sys
 import threading
 import time
 from contextlib import suppress
-from typing import Any, Callable, Dict, List, Optional
+from typing import Any, BinaryIO, Callable, Dict, List, Optional
 from urllib.parse import unquote, urlsplit
 
 from lsprotocol import types as lsp
 from pygls.exceptions import JsonRpcException
 
 from pursue_gen import __version__
-from pursue_gen.diagnostics import PursueError
+from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.language.document import Edit
 from pursue_gen.language.draft import definition, rename, same_name
 from pursue_gen.language.formatter import formatted
 from pursue_gen.language.kinds import STATEMENTS
-from pursue_gen.language.lines import plain
+from pursue_gen.language.tokens import plain
 from pursue_gen.tools.lsp import convert
 from pursue_gen.tools.lsp.completion import complete
 from pursue_gen.tools.lsp.fixes import fixes
-from pursue_gen.tools.lsp.framing import BoundedInput
 from pursue_gen.tools.lsp.hover import hover
 from pursue_gen.tools.lsp.open_document import OpenDocument, picture
 from pursue_gen.tools.lsp.outline import folds, symbols
@@ -34,6 +34,14 @@ MAP = "pursue/map"
 
 _REQUEST_FAILED = -32803
 
+LARGEST_MESSAGE = 32 << 20
+"""Bytes of a message: more than the largest scenario takes with each letter written as two numbers of JSON."""
+
+LONGEST_HEADER = 8192
+"""Bytes of a line of a message's head."""
+
+_LENGTH = re.compile(rb"\s*Content-Length\s*:(.*)", re.IGNORECASE | re.DOTALL)
+
 PAUSE = 0.1
 """Seconds between a change of a text and its check: one types faster than one reads."""
 
@@ -41,7 +49,7 @@ PAUSE = 0.1
 def serve(pages: Optional[str] = None) -> bool:
     """Serve an editor until it exits; return True after the protocol's shutdown request.
 
-    Raises PursueError for a message that is refused (`framing`).
+    Raises PursueError for a message that is refused (`BoundedInput`).
     """
     logging.disable(logging.CRITICAL)  # what goes wrong is answered; on stderr editors show it as a failure
     session, messages = Session(pages), BoundedInput(sys.stdin.buffer)
@@ -327,3 +335,44 @@ class Checker:
                     self._publish(uri, document)
                 except Exception:  # a text that cannot be checked must not end the thread
                     continue
+
+
+class BoundedInput:
+    """A stream of messages, as pygls reads it: line by line the head, then the body.
+
+    It is at its end before a message whose head is refused; `refusal` then says why.
+    """
+
+    def __init__(self, stream: BinaryIO) -> None:
+        self.refusal: Optional[Diagnostic] = None
+        self._stream = stream
+
+    @property
+    def closed(self) -> bool:
+        """True where nothing more can be read."""
+        return self._stream.closed
+
+    def readline(self) -> bytes:
+        """The next line of a head, b"" at the end. A length is written as pygls knows it."""
+        if self.refusal is not None:
+            return b""
+        line = self._stream.readline(LONGEST_HEADER + 1)
+        if len(line) > LONGEST_HEADER:
+            return self._refuse(f"a line of its head has more than {LONGEST_HEADER} bytes")
+        found = _LENGTH.fullmatch(line)
+        if found is None:
+            return line
+        length = found.group(1).strip()
+        if not re.fullmatch(rb"[0-9]{1,12}", length) or not 0 < int(length) <= LARGEST_MESSAGE:
+            shown = length[:40].decode("ascii", "replace")
+            return self._refuse(f"its Content-Length is {shown!r}; expected 1 to {LARGEST_MESSAGE}")
+        return b"Content-Length: %d\r\n" % int(length)
+
+    def read(self, size: int) -> bytes:
+        """The body of a message."""
+        return self._stream.read(size)
+
+    def _refuse(self, why: str) -> bytes:
+        hint = "the editor has to speak the language server protocol: restart the server there"
+        self.refusal = error("LSP005", f"a message of the editor is refused: {why}", hint=hint)
+        return b""

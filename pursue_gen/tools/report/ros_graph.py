@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, List, Sequence, Tuple
 
-from pursue_gen.language.doors import doors_of
-from pursue_gen.language.lifts import rides_of
+from pursue_gen.language.lifts import doors_of, rides_of
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import SubStrategy
 from pursue_gen.partition.split import UI

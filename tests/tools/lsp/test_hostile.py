@@ -17,10 +17,10 @@ from pursue_gen.language.draft import Draft, definition, rename, same_name
 from pursue_gen.tools.lsp.completion import complete
 from pursue_gen.tools.lsp.fixes import fixes
 from pursue_gen.tools.lsp.fixes_meaning import ordered
-from pursue_gen.tools.lsp.framing import BoundedInput
 from pursue_gen.tools.lsp.hover import hover
 from pursue_gen.tools.lsp.open_document import picture
 from pursue_gen.tools.lsp.outline import folds, symbols
+from pursue_gen.tools.lsp.server import BoundedInput
 
 from .client import PATIENCE
 from .scenarios import SCENARIOS, SMALL

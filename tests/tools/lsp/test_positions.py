@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import Span
-from pursue_gen.language.lines import plain
+from pursue_gen.language.tokens import plain
 from pursue_gen.tools.lsp.open_document import OpenDocument
 
 TEXTS = st.text(alphabet="ab \t\né😀\U0001d538\u2028\x0c\x85", max_size=60)
