@@ -50,6 +50,7 @@ from pursue_gen.tools.report import timeline
 from pursue_gen.tools.report.recording import ending_text, simulated
 from pursue_gen.tools.simulation.outcome import Settings
 from pursue_gen.tools.simulation.runs import Case, case_of
+from pursue_gen.tools.simulation.stage import Stage, stage_of
 from pursue_gen.workspace import Options
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -89,6 +90,11 @@ class Facts:
         assert self.won is not None, f"{self.name} is lost"
         goal = self.won.objective.kind is not Kind.SAFETY
         return case_of(self.settled, self.won, Options(), Settings(until=1000.0 if goal else UNTIL))[0]
+
+    @functools.cached_property
+    def stage(self) -> Stage:
+        """What all its missions have in common."""
+        return stage_of(self.case.scenario, self.case.won, self.case.options)
 
 
 def scenario_files() -> Dict[str, Path]:
@@ -185,7 +191,7 @@ def _map_part(found: Facts, number: int, pictures: Dict[str, str]) -> str:
 
 
 def _mission_part(found: Facts, number: int, pictures: Dict[str, str]) -> str:
-    recording = simulated(found.case, number)
+    recording = simulated(found.case, number, found.stage)
     pictures[f"{found.name}_mission.svg"] = timeline.draw(recording)
     how = f"`pursue-gen sim scenarios/{_name(found)}.pur --runs 1 --seed {number} --timeline mission.html`"
     if found.guarantee is None:

@@ -132,10 +132,12 @@ class _Groups:
             raise Refused(error("PML401", f"nothing is in {name}", self._at(tokens[1]), hint))
         if any(one.type not in NAMES for one in members) or any(one.type != "COMMA" for one in commas):
             return tokens
-        for number, member in enumerate(members):
-            if member in members[:number]:
+        seen: Set[Token] = set()
+        for member in members:
+            if member in seen:
                 message = f"{member} is in {name} twice"
                 raise Refused(error("PML403", message, self._at(member), "delete one of the two"))
+            seen.add(member)
         self._broken.remove(name)
         self._groups[name] = members
         return (*tokens[:3], *listed)

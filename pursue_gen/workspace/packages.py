@@ -119,8 +119,9 @@ def environment(templates: Path) -> jinja2.Environment:
     )
 
 
+@functools.lru_cache(maxsize=None)
 def runtime_package() -> Package:
-    """The package that holds the run time, byte for byte as it is imported here."""
+    """The package that holds the run time, byte for byte as it is imported here; read once in a process."""
     root = Path(pursue_runtime.__file__).resolve().parent
     files = {f"src/{RUNTIME}/{path}": content for path, content in _tree(root).items()}
     return Package(RUNTIME, RUNTIME, "What the nodes of a mission do: the same in every workspace.", files)

@@ -96,9 +96,9 @@ def test_a_formula_is_about_what_there_is(name: str) -> None:
 
 @pytest.mark.parametrize("name", FILES)
 def test_missions_of_the_strategy_keep_to_the_formula(name: str) -> None:
-    case = facts(name).case
+    case, stage = facts(name).case, facts(name).stage
     for seed, opponent in enumerate(("random", "random", "worst", "still"), 1):
-        recording = simulated(replace(case, settings=replace(case.settings, opponent=opponent)), seed)
+        recording = simulated(replace(case, settings=replace(case.settings, opponent=opponent)), seed, stage)
         happened = [Happening(s.at, s.event, s.agent, s.locations, s.values) for s in recording.steps]
         mission = trace(case.scenario, happened, recording.end, complete=bool(case.scenario.reach))
         assert is_kept(formula(name), mission), mission

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from fractions import Fraction
 
@@ -17,7 +18,7 @@ from pursue_gen.solving.inputs import settled
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.passages import crowd_of, won_by_passages
 from pursue_gen.solving.request import SolveRequest
-from pursue_gen.solving.rules import DEFAULT, IDEAL, Rules, played
+from pursue_gen.solving.rules import DEFAULT, IDEAL, played
 from pursue_gen.solving.solution import Solution
 from pursue_gen.solving.solvers import solved
 from pursue_gen.solving.verdict import verdict_json
@@ -33,9 +34,10 @@ from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import read_cover
 
 
-def won(text: str, rules: Rules = DEFAULT) -> Solution:
+@functools.lru_cache(maxsize=None)
+def won(text: str, ideal: bool = False) -> Solution:
     scenario = parse(text, "passing.pur", "passing")
-    return solved(translate(scenario), scenario_objective(scenario), rules)
+    return solved(translate(scenario), scenario_objective(scenario), IDEAL if ideal else DEFAULT)
 
 
 @pytest.mark.parametrize("robots", [4, 5, 8, 12])
@@ -165,7 +167,7 @@ def test_on_a_square_robots_move_at_the_same_time() -> None:
 
 
 def test_the_ideal_game_is_won_as_well() -> None:
-    found = won(pass_in_a_corridor(4), IDEAL)
+    found = won(pass_in_a_corridor(4), ideal=True)
     assert found.strategy.passages
     assert found.guarantee is not None
     default = won(pass_in_a_corridor(4)).guarantee

@@ -66,10 +66,11 @@ def test_missions_with_random_opponents_end_well(source: str) -> None:
 def test_ends_are_drawn_from_the_whole_window() -> None:
     read = parse(WON[3], "x.pur", "x")
     case, _ = case_of(read, solve_scenario(read, DEFAULT), Options(), Settings("random"))
+    stage = stage_of(read, case.won, Options())
     lasted = []
     for seed in range(8):
         begun = 0.0
-        for step in simulated(case, seed).steps:
+        for step in simulated(case, seed, stage).steps:
             begun = step.at if step.event == "boil" else begun
             lasted += [step.at - begun] if step.event == "boilDONE" else []
     assert 4 < min(lasted) < 5 and 8 < max(lasted) < 9.5
@@ -79,9 +80,10 @@ def test_who_has_loaded_unloads() -> None:
     """In recorded missions each unload is of the cart that loaded last before it and has not unloaded since."""
     read = parse(text("airport/own_load").replace("within 6", "within 9"), "x.pur", "x")
     case, _ = case_of(read, solve_scenario(read, DEFAULT), Options(), Settings("random"))
+    stage = stage_of(read, case.won, Options())
     for seed in range(5):
         loaded = set()
-        for step in simulated(case, seed).steps:
+        for step in simulated(case, seed, stage).steps:
             if step.event == "load":
                 assert step.agent not in loaded
                 loaded.add(step.agent)

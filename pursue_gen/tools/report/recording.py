@@ -15,7 +15,7 @@ from pursue_gen.tga.network import Network
 from pursue_gen.tools.simulation.meaning import holds
 from pursue_gen.tools.simulation.mission import SimulatedMission
 from pursue_gen.tools.simulation.runs import Case
-from pursue_gen.tools.simulation.stage import stage_of
+from pursue_gen.tools.simulation.stage import Stage, stage_of
 from pursue_gen.vocabulary.statuses import statuses
 from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, HOLDING, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
@@ -129,9 +129,9 @@ def from_states(
     return Recording(scenario, network, tuple(steps), end, source)
 
 
-def simulated(case: Case, seed: int) -> Recording:
-    """One simulated mission: the same as `simulation.runs` plays with this seed."""
-    stage = stage_of(case.scenario, case.won, case.options)
+def simulated(case: Case, seed: int, stage: Optional[Stage] = None) -> Recording:
+    """One simulated mission, on this stage: the same as `simulation.runs` plays with this seed."""
+    stage = stage or stage_of(case.scenario, case.won, case.options)
     mission = SimulatedMission(stage, case.settings, seed, case.worst_times())
     until, source = mission.run().time, f"simulated mission {seed}"
     found = from_states(mission.recorder.states, case.scenario, case.won.network, source, until)
