@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Tuple, Union
 
 from pursue_gen.language.network_names import DESK_OPEN, ORDER_DESK
+from pursue_gen.tga.event_words import event_word
 from pursue_gen.tga.network import Objective
-from pursue_gen.tools.replay.moves import EXACT, DiscreteState, Move, Moves, after, breach, overstayed, without
+from pursue_gen.tools.replay.moves import EXACT, DiscreteState, Move, Moves, after, breach, place_of, without
 from pursue_gen.tools.replay.record import MissionRecord, RecordedWord, read_word
 from pursue_runtime.bounded import json_object
 from pursue_runtime.event_words import CANCELLED, FAILED, FINISH, ORDERED, PLANNED, START, STOP
@@ -185,7 +186,7 @@ class _Walk:
         found = entry.args[0] if entry.args and isinstance(entry.args[0], dict) else {}
         try:
             state = SystemState(**found)
-            place = DiscreteState(dict(state.locations), dict(state.values))
+            place = place_of(state)
             zeros = {clock: float(state.stamp) - float(value) * self._unit for clock, value in state.clocks.items()}
             known = self._moves.knows(place) and set(zeros) == set(self._moves.network.clocks)
         except (TypeError, ValueError, AttributeError):
@@ -212,7 +213,7 @@ class _Walk:
                 if entry.call == "tick" and move is None:
                     move = self._due_command(entry.at)
                 if entry.call == "tick" and move is None:
-                    self._place = without(self._place, overstayed(self._moves, self._place, self._clocks(entry.at)))
+                    self._place = without(self._place, self._moves.overstayed(self._place, self._clocks(entry.at)))
                 if entry.call == "tick" or (word is not None and word.event == FAILED):
                     move = move or self._without_lost()
                 word = None if word and not word.event.startswith("_") else word
@@ -285,7 +286,7 @@ class _Walk:
         self._place, resets = after(move, self._place)
         self._noted = [word for word in self._noted if self._moves.sharing(self._place, word.event, word.agent)]
         self._zeros.update(dict.fromkeys(resets, at))
-        self._agent, self._event = move[0][0], self._moves.word(*move[0])
+        self._agent, self._event = move[0][0], event_word(*move[0])
         goal, bad = self._objective.goal, self._objective.bad
         if goal and all(_at(self._place, where) for where in goal):
             self._status = WON

@@ -3,8 +3,7 @@ assumptions and objectives is broken."""
 
 from __future__ import annotations
 
-import itertools
-from itertools import chain
+from itertools import chain, product
 from typing import Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_gen.language.network_names import assumption_clock
@@ -66,11 +65,6 @@ class Moves:
         self._names = [automaton.name for automaton in network.automata]
         assumed = (Symbol.of(name) for name, _ in network.variables if role_of(name) is Role.ASSUMPTION)
         self.assumed: Dict[str, str] = {name: assumption_clock(int(name.parts[0])) for name in assumed}
-
-    @staticmethod
-    def word(automaton: str, edge: Edge) -> str:
-        """What the step is called on the topics."""
-        return event_word(automaton, edge)
 
     def knows(self, place: DiscreteState) -> bool:
         """True where the place names these automata with locations of theirs, and these variables."""
@@ -173,17 +167,21 @@ class Moves:
     def overdue(self, place: DiscreteState, clocks: Mapping[str, float]) -> Dict[str, float]:
         """Who should have moved already, and the time units since then."""
         late: Dict[str, float] = {}
-        for part in place.locations.items():
-            for bound in self._bounds(part, place):
-                over = clocks.get(bound.clock, 0.0) - bound.bound
-                if over > late.get(part[0], 0.0):
-                    late[part[0]] = over
-        return late
+        for name, _, by in self._exceeded(place, clocks):
+            late[name] = max(late.get(name, 0.0), by)
+        return {name: by for name, by in late.items() if by > 0.0}
 
-    def exceeded(self, place: DiscreteState, clocks: Mapping[str, float]) -> Dict[str, float]:
-        """By how many time units each clock that bounds a stay there is past its bound; below 0: it is not."""
-        bounds = (bound for part in place.locations.items() for bound in self._bounds(part, place))
-        return {bound.clock: clocks.get(bound.clock, 0.0) - bound.bound for bound in bounds}
+    def overstayed(self, place: DiscreteState, clocks: Mapping[str, float]) -> Tuple[str, ...]:
+        """The variables of the assumptions by which somebody should have left by now."""
+        late = {clock: by for _, clock, by in self._exceeded(place, clocks)}
+        return tuple(name for name in _holding(place.values) if late.get(self.assumed[name], -1.0) >= 0)
+
+    def _exceeded(self, place: DiscreteState, clocks: Mapping[str, float]) -> Iterator[Tuple[str, str, float]]:
+        """Whose stay there is bounded by which clock, and by how many time units that is past its bound; below 0: it is
+        not."""
+        for name, here in place.locations.items():
+            for bound in self._bounds((name, here), place):
+                yield name, bound.clock, clocks.get(bound.clock, 0.0) - bound.bound
 
     def is_due(self, move: Move, place: DiscreteState, clocks: Mapping[str, float]) -> bool:
         """True unless the mover may stay where it is for some time: a deadline is missed at its end, not before."""
@@ -212,7 +210,7 @@ class Moves:
                 receiving = [(name, e) for e in enabled if _receives(e, channel)]
                 if receiving:
                     answers.append(receiving)
-        for chosen in itertools.product(*answers):
+        for chosen in product(*answers):
             yield ((mover, edge), *chosen)
 
 
@@ -260,12 +258,6 @@ def breach(moves: Moves, place: DiscreteState, word: str, agent: str) -> Found:
         if found:
             return without(place, some), found
     return place, []
-
-
-def overstayed(moves: Moves, place: DiscreteState, clocks: Mapping[str, float]) -> Tuple[str, ...]:
-    """The variables of the assumptions by which somebody should have left by now."""
-    over = {clock for clock, late in moves.exceeded(place, clocks).items() if late >= 0}
-    return tuple(name for name in _holding(place.values) if moves.assumed[name] in over)
 
 
 class Broken:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Dict, FrozenSet, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.tools.replay.finding import NOTE, WORLD, Finding
-from pursue_gen.tools.replay.moves import EXACT, DiscreteState, Moves, place_of
+from pursue_gen.tools.replay.moves import EXACT, Moves, place_of
 from pursue_gen.tools.replay.record import MissionRecord, RecordedWord
 from pursue_runtime.event_words import (
     BACK,
@@ -67,8 +67,8 @@ class WordMatches:
     words: Mapping[int, RecordedWord]
     states: Mapping[int, SystemState]
     unmatched: Tuple[RecordedWord, ...]
-    standing: FrozenSet[int] = frozenset()
-    arrivals: Optional[Arrivals] = None
+    standing: FrozenSet[int]
+    arrivals: Arrivals
 
     def of(self, seq: int) -> Optional[RecordedWord]:
         """The word that led to this state."""
@@ -155,7 +155,7 @@ def _why(now: SystemState, word: RecordedWord, said: WordMatches, moves: Moves) 
         meant = (move for end in (word.event, part_of(word.event)) for move in moves.of(place_of(now), end, word.agent))
         doer = next((move[0][0] for move in meant), "")
         agent = word.agent or doer
-        if said.arrivals is not None and said.arrivals.are_after(word, agent, now.seq):
+        if said.arrivals.are_after(word, agent, now.seq):
             return now.seq, f"it reports the end of what {agent} had begun before state {now.seq}"
         if moves.sharing(place_of(now), word.event, word.agent):
             return now.seq, "it was noted, and others had not finished yet"
@@ -181,7 +181,7 @@ def _impossible(state: SystemState, word: RecordedWord, moves: Moves) -> str:
         return f"the mission was {state.status}"
     if state.status == HOLDING and word.seq is not None:
         return "the mission held"
-    place = DiscreteState(dict(state.locations), dict(state.values))
+    place = place_of(state)
     if next(moves.of(place, word.event, word.agent), None) is None:
         return f"it cannot happen in state {state.seq}; possible: {', '.join(moves.possible(place)) or 'nothing'}"
     return ""
