@@ -140,19 +140,22 @@ def _connection(line: Sequence[Point], ways: Sequence[Connection]) -> Iterator[s
     if way.one_way:
         part = 0.42  # two that go opposite ways do not cover each other's lengths
         yield _arrow(*line[-2:])
-    x, y = along(line, part)
+    x, y = first_part(line, part)[-1]
     yield text(x, y + 5, f"{length} ?" if dash else length, "pg-small pg-halo")
 
 
-def along(line: Sequence[Point], part: float) -> Point:
-    """The point after so much of a line with bends, from 0 to 1."""
+def first_part(line: Sequence[Point], part: float) -> Tuple[Point, ...]:
+    """So much of a line with bends, from 0 to 1."""
     left = part * sum(math.dist(a, b) for a, b in zip(line, line[1:]))
+    found = [line[0]]
     for a, b in zip(line, line[1:]):
+        if left <= 0:
+            break
         size = math.dist(a, b)
-        if size >= left and size > 0:
-            return a[0] + left / size * (b[0] - a[0]), a[1] + left / size * (b[1] - a[1])
+        share = min(1.0, left / size) if size else 1.0
+        found.append((a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])))
         left -= size
-    return line[-1]
+    return tuple(found)
 
 
 def _arrow(a: Point, b: Point) -> str:

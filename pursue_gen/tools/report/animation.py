@@ -11,7 +11,7 @@ import math
 import re
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing import map_svg
@@ -173,7 +173,7 @@ def _segments_of(
         points = line(*here.parts) if is_way else line(*there * 2)
         done = _part_done(recording, stay, agent, here.parts) if is_way else 0.0
         description, is_work = words.place(agent.name, stay.what), here.role is Role.WORK
-        segments.append(Segment(stay.start, stay.end, tuple(_first_part(points, done)), description, is_work))
+        segments.append(Segment(stay.start, stay.end, map_svg.first_part(points, done), description, is_work))
     return segments
 
 
@@ -186,14 +186,3 @@ def _part_done(recording: Recording, stay: Stay, agent: Agent, part: Tuple[str, 
     return float(min(0.95, (stay.end - stay.start) / longest))
 
 
-def _first_part(line: Sequence[Point], part: float) -> List[Point]:
-    """So much of a line with bends, from 0 to 1."""
-    left = part * sum(math.dist(a, b) for a, b in zip(line, line[1:]))
-    found = [line[0]]
-    for a, b in zip(line, line[1:]):
-        if left <= 0:
-            break
-        size = math.dist(a, b)
-        found.append(map_svg.along((a, b), min(1.0, left / size)) if size else b)
-        left -= size
-    return found
