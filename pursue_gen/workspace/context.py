@@ -3,8 +3,7 @@
 A template that uses anything else is an error (jinja2's StrictUndefined). Every template has
 
 - `scenario`, the scenario's name; `generator`, the version of the generator;
-- `package`, the package's name, and `controller`, the same in a controller; `version`, `maintainer`,
-  `maintainer_email`, `license`, `summary` of its manifest;
+- `package`, the package's name, and `controller`, the same in a controller; `summary` of its manifest;
 - `agents`, a list of {name, kind} in order of declaration, kind `robot`, `human` or `agent` (uncontrollable);
 - `free_agents`, the names of the uncontrollable ones; `robots`, those of the robots;
 - `controllers`, the controllers' names in order: their packages and their nodes have them;
@@ -50,11 +49,10 @@ class Options:
     `floor`: a floor plan that lies under the map of the UI's page.
     `guarantee`: in how many time units the strategy comes to the goal at worst; None where that is not known.
     `answers`: by automata, how many time units after they are due promises are kept at worst, as far as it is known.
-    `time_unit`: the default length of a time unit in seconds; None: as the scenario says, 1 where it does not.
     `machines`: which machine runs which node; `docker` and `systemd`: with files for containers, and for services.
     `spot_distance`: metres between the robots at one place where the scenario does not say where they stand; `spare`:
     robot → place → pose that it alone may take if need be; `levels`: those that have maps of their own, with their
-    elevations (metres). The rest goes into the manifests.
+    elevations (metres).
     """
 
     controllers: str = "distributed"
@@ -68,16 +66,12 @@ class Options:
     guarantee: Optional[Fraction] = None
     answers: Mapping[str, Fraction] = field(default_factory=dict)
     floor: Optional[Floor] = None
-    time_unit: Optional[float] = None
     machines: Machines = ONE_MACHINE
     docker: bool = False
     systemd: bool = False
     spot_distance: float = SPOT_DISTANCE
     spare: Mapping[str, Table] = field(default_factory=dict)
     levels: Mapping[str, float] = field(default_factory=dict)
-    maintainer: str = "maintainer"
-    maintainer_email: str = "maintainer@example.org"
-    license: str = "BSD-3-Clause"
 
 
 def bringup_of(scenario: Scenario) -> str:
@@ -102,10 +96,6 @@ def common(
     return {
         "scenario": scenario.name,
         "generator": __version__,
-        "version": __version__,
-        "maintainer": options.maintainer,
-        "maintainer_email": options.maintainer_email,
-        "license": options.license,
         "agents": agents,
         "robots": [agent.name for agent in scenario.agents if agent.is_robot],
         "free_agents": [agent.name for agent in scenario.agents if not agent.controllable],
@@ -115,7 +105,7 @@ def common(
         "doors": any(doors_of(scenario, agent) or rides_of(scenario, agent) for agent in scenario.agents),
         "reaches": objective.reaches,
         "bringup": bringup_of(scenario),
-        "time_unit": float(options.time_unit or scenario.unit or 1),
+        "time_unit": float(scenario.unit or 1),
         "machines": [(node, options.machines.of(node)) for node in nodes_of([sub.controller for sub in controllers])],
         "docker": options.docker,
         "systemd": options.systemd,
