@@ -4,8 +4,8 @@ A template that uses anything else is an error (jinja2's StrictUndefined). Every
 
 - `scenario`, the scenario's name; `generator`, the version of the generator;
 - `package`, the package's name, and `controller`, the same in a controller; `summary` of its manifest;
-- `agents`, a list of {name, kind} in order of declaration, kind `robot`, `human` or `agent` (uncontrollable);
-- `free_agents`, the names of the uncontrollable ones; `robots`, those of the robots;
+- `free_agents`, the names of the uncontrollable agents; `robots`, those of the robots; `facts`, the states that are
+  found out on the way;
 - `controllers`, the controllers' names in order: their packages and their nodes have them;
 - `reported`, the agents whose ends come from the world: all of them, but for those whose ends a controller decides;
 - `doors`: there are ways through doors that open by themselves, or by lifts;
@@ -29,7 +29,7 @@ from pursue_gen import __version__
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.language.doors import doors_of
 from pursue_gen.language.lifts import rides_of
-from pursue_gen.language.scenario import Agent, Scenario
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import SubStrategy
 from pursue_gen.tga.network import Objective
 from pursue_gen.workspace.machines import ONE_MACHINE, Machines, nodes_of
@@ -79,24 +79,15 @@ def bringup_of(scenario: Scenario) -> str:
     return f"{scenario.name}_bringup"
 
 
-def kind_of(agent: Agent) -> str:
-    """robot, human, or agent for one that is uncontrollable."""
-    if not agent.controllable:
-        return "agent"
-    return "human" if agent.human else "robot"
-
-
 def common(
     scenario: Scenario, objective: Objective, options: Options, controllers: Sequence[SubStrategy]
 ) -> Dict[str, Any]:
     """The values that every template of a workspace has (but for `package` and `summary`)."""
-    agents = [{"name": agent.name, "kind": kind_of(agent)} for agent in scenario.agents]
     first_moves = [command.moves[0] for sub in controllers for _, block in sub.blocks for command in block]
     decided = {move.automaton for move in first_moves if move.edge.is_end}
     return {
         "scenario": scenario.name,
         "generator": __version__,
-        "agents": agents,
         "robots": [agent.name for agent in scenario.agents if agent.is_robot],
         "free_agents": [agent.name for agent in scenario.agents if not agent.controllable],
         "facts": list(scenario.facts),
