@@ -23,8 +23,29 @@ _LARGEST_FILE = 160 << 20
 
 _MODES = ("trinary", "scale", "raw")
 
+class _OnMap:
+    """An image on the map (in metres), turned by `yaw` (radians): `x`, `y` is its lower left corner."""
+
+    resolution: float
+    x: float
+    y: float
+    yaw: float
+
+    def metres(self, across: float, up: float) -> Tuple[float, float]:
+        """The point of the map so many pixels from the lower left corner; of arrays for arrays."""
+        cos, sin = math.cos(self.yaw), math.sin(self.yaw)
+        across, up = across * self.resolution, up * self.resolution
+        return self.x + cos * across - sin * up, self.y + sin * across + cos * up
+
+    def pixels(self, x: float, y: float) -> Tuple[float, float]:
+        """How many pixels from the lower left corner a point of the map is: across, and up."""
+        cos, sin = math.cos(self.yaw), math.sin(self.yaw)
+        x, y = x - self.x, y - self.y
+        return (cos * x + sin * y) / self.resolution, (cos * y - sin * x) / self.resolution
+
+
 @dataclass(frozen=True)
-class Floor:
+class Floor(_OnMap):
     """A floor plan. `uri`: the picture as data; `width`, `height` in pixels; `resolution` in metres per pixel.
 
     `x`, `y` (metres) and `yaw` (radians) say where its lower left corner is on the map, and how it is turned. `paths`
@@ -47,14 +68,12 @@ class Floor:
 
     def corners(self) -> Tuple[Tuple[float, float], ...]:
         """The four corners in metres."""
-        across, up = self.width * self.resolution, self.height * self.resolution
-        cos, sin = math.cos(self.yaw), math.sin(self.yaw)
-        ends = ((0.0, 0.0), (across, 0.0), (across, up), (0.0, up))
-        return tuple((self.x + cos * a - sin * b, self.y + sin * a + cos * b) for a, b in ends)
+        ends = ((0, 0), (self.width, 0), (self.width, self.height), (0, self.height))
+        return tuple(self.metres(*end) for end in ends)
 
 
 @dataclass(frozen=True)
-class MapSettings:
+class MapSettings(_OnMap):
     """What the yaml file of a map says: the file of its image, and what `Floor` has of it; `mode` is map_server's.
 
     `negate`: bright pixels are occupied; a darkness above `occupied` (0 to 1) is an obstacle, one below `free` is free.

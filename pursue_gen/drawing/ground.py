@@ -39,17 +39,12 @@ class Ground:
 
     def pixel(self, x: float, y: float) -> Tuple[int, int]:
         """The column and the row, counted from the top, in which a point of the map (metres) is."""
-        place = self.settings
-        cos, sin = math.cos(place.yaw), math.sin(place.yaw)
-        column = math.floor((cos * (x - place.x) + sin * (y - place.y)) / place.resolution)
-        return column, self.height - 1 - math.floor((cos * (y - place.y) - sin * (x - place.x)) / place.resolution)
+        across, up = self.settings.pixels(x, y)
+        return math.floor(across), self.height - 1 - math.floor(up)
 
     def middle(self, column: float, row: float) -> Tuple[float, float]:
         """The middle of a pixel (column, row from the top) as a point of the map (metres)."""
-        place = self.settings
-        cos, sin = math.cos(place.yaw), math.sin(place.yaw)
-        across, up = (column + 0.5) * place.resolution, (self.height - row - 0.5) * place.resolution
-        return place.x + cos * across - sin * up, place.y + sin * across + cos * up
+        return self.settings.metres(column + 0.5, self.height - row - 0.5)
 
     def free_pixels(self) -> Optional[bytes]:
         """1 for each pixel that is free, else 0, row by row from the top; None where the pixels are not known."""

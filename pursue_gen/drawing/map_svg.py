@@ -36,13 +36,12 @@ def draw(
     `floor` is drawn under it, `ident` is the picture's id in a page. `spots`: agent → place → pose; those beside the
     poses of their places get the agent's mark.
     """
-    width = min(_WIDEST, _WIDTH * math.sqrt(max(1.0, len(poses) / _ROOMY)))
-    paper = Paper(poses, floor, width, margin_of(scenario))
+    paper = paper_of(scenario, poses, floor)
     places = {name: paper.point(pose.x, pose.y) for name, pose in poses.items()}
     looks = agent_looks([agent.name for agent in scenario.agents])
     body = [paper.floor(floor)] if floor else []
     for ways in _beside_each_other(scenario):
-        body += _connection(paper.way(ways[0].a, ways[0].b, poses, floor), ways)
+        body += _connection(paper.way(ways[0].a, ways[0].b), ways)
     body += [_poi(scenario.shown(name), places[name]) for name in sorted(places)]
     for agent_name, table in (spots or {}).items():
         beside = [pose for place, pose in table.items() if pose != poses[place]]
@@ -51,24 +50,30 @@ def draw(
     body += _standing(scenario, places, looks)
     above, below = _room(scenario, places, paper.height)
     for agent in scenario.agents:
-        lines = _wrapped(_description(agent, scenario), width - 150)
+        lines = _wrapped(_description(agent, scenario), paper.width - 150)
         body += _legend(looks[agent.name], lines, below)
         below += _LINE * len(lines) + 8
     notes = [_anywhere(scenario)] if _anywhere(scenario) else []
     notes += list(_conditions(scenario))
     notes += ["positions computed from the distances"] if computed else []
     for note in notes:
-        for line in _wrapped(note, width - 40):
+        for line in _wrapped(note, paper.width - 40):
             body.append(text(20, below + 12, line, "pg-small", "start"))
             below += _LINE
     title = f"Map of {scenario.name}"
     description = f"{len(places)} places, {len(scenario.connections)} connections, {len(scenario.agents)} agents"
     if above:  # many agents start at a place near the upper rim
         body = [tag("g", "\n".join(body), transform=f"translate(0 {above:.2f})")]
-    return svg(width, above + below + 10, title, description, body, ident)
+    return svg(paper.width, above + below + 10, title, description, body, ident)
 
 
-def margin_of(scenario: Scenario) -> float:
+def paper_of(scenario: Scenario, poses: Mapping[str, Pose], floor: Optional[Floor]) -> Paper:
+    """On what the map of a scenario is drawn."""
+    width = min(_WIDEST, _WIDTH * math.sqrt(max(1.0, len(poses) / _ROOMY)))
+    return Paper(poses, floor, width, _margin(scenario))
+
+
+def _margin(scenario: Scenario) -> float:
     """How much room the labels beside places at the rim need, in pixels."""
     bound = (event for event in scenario.events if event.location is not None)
     labels = [f"⚙ {event.shown}{_lasts(event, scenario.unit)}" for event in bound if event.label]
@@ -82,6 +87,7 @@ class Paper:
 
     def __init__(self, poses: Mapping[str, Pose], floor: Optional[Floor], width: float, around: float) -> None:
         """`around`: the margin, in pixels, where there is no floor plan."""
+        self.width, self._poses, self._paths = width, poses, floor.paths if floor else {}
         points = [(pose.x, pose.y) for pose in poses.values()] + list(floor.corners() if floor else ())
         xs, ys = [x for x, _ in points] or [0.0], [y for _, y in points] or [0.0]
         margin = 30.0 if floor else around
@@ -94,12 +100,11 @@ class Paper:
         """Where a point of the map is on the picture."""
         return self._left + self.scale * x, self._top - self.scale * y
 
-    def way(self, a: str, b: str, poses: Mapping[str, Pose], floor: Optional[Floor]) -> List[Point]:
+    def way(self, a: str, b: str) -> List[Point]:
         """The way from one place to another on the picture, along its path where that is known."""
-        paths = floor.paths if floor else {}
-        bends = paths.get((a, b)) or list(paths.get((b, a), ()))[::-1]
-        inner = [self.point(*bend) for bend in bends[1:-1]]
-        return [self.point(poses[a].x, poses[a].y), *inner, self.point(poses[b].x, poses[b].y)]
+        bends = self._paths.get((a, b)) or self._paths.get((b, a), ())[::-1]
+        ends = [self.point(pose.x, pose.y) for pose in (self._poses[a], self._poses[b])]
+        return [ends[0], *(self.point(*bend) for bend in bends[1:-1]), ends[1]]
 
     def floor(self, floor: Floor) -> str:
         """The floor plan, pale, so that what is drawn on it can be read."""
@@ -140,19 +145,22 @@ def _connection(line: Sequence[Point], ways: Sequence[Connection]) -> Iterator[s
     if way.one_way:
         part = 0.42  # two that go opposite ways do not cover each other's lengths
         yield _arrow(*line[-2:])
-    x, y = along(line, part)
+    x, y = first_part(line, part)[-1]
     yield text(x, y + 5, f"{length} ?" if dash else length, "pg-small pg-halo")
 
 
-def along(line: Sequence[Point], part: float) -> Point:
-    """The point after so much of a line with bends, from 0 to 1."""
+def first_part(line: Sequence[Point], part: float) -> Tuple[Point, ...]:
+    """So much of a line with bends, from 0 to 1."""
     left = part * sum(math.dist(a, b) for a, b in zip(line, line[1:]))
+    found = [line[0]]
     for a, b in zip(line, line[1:]):
+        if left <= 0:
+            break
         size = math.dist(a, b)
-        if size >= left and size > 0:
-            return a[0] + left / size * (b[0] - a[0]), a[1] + left / size * (b[1] - a[1])
+        share = min(1.0, left / size) if size else 1.0
+        found.append((a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])))
         left -= size
-    return line[-1]
+    return tuple(found)
 
 
 def _arrow(a: Point, b: Point) -> str:

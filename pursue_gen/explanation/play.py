@@ -279,13 +279,8 @@ class _CounterPlayer:
         for late in (Fraction(0), self._reaction):
             if open_.holds(delay + late) and self._leaves_lost(here, move, delay + late):
                 return move, delay + late
-        for grain in (COARSE, _FINE):
-            limit = delay + self._reaction
-            for moment in sorted({delay, limit, Fraction(0), *moments(theirs, grain)}):
-                found = self._at(here, theirs, moment) if moment <= limit else None
-                if found is not None:
-                    return found
-        return None
+        limit = delay + self._reaction
+        return self._at_some(here, theirs, delay, limit, until=limit)
 
     def _unhurried(self, here: Position, theirs: Windows) -> Optional[Choice]:
         """The controller waits: the environment does what it must, else nothing if that is enough, else something."""
@@ -296,12 +291,15 @@ class _CounterPlayer:
                 return move, delay
         if self._horizon is None if room is None else bool(self._overdue(here, room)):
             return None
-        for grain in (COARSE, _FINE):
-            for moment in sorted({Fraction(0), *moments(theirs, grain)}):
-                found = self._at(here, theirs, moment)
-                if found is not None:
-                    return found
-        return None
+        return self._at_some(here, theirs)
+
+    def _at_some(
+        self, here: Position, theirs: Windows, *more: Fraction, until: Optional[Fraction] = None
+    ) -> Optional[Choice]:
+        """The first move now, at one of these moments, or at a beginning or an end of theirs, up to `until`."""
+        some = (moment for grain in (COARSE, _FINE) for moment in sorted({Fraction(0), *more, *moments(theirs, grain)}))
+        found = (self._at(here, theirs, moment) for moment in some if until is None or moment <= until)
+        return next(filter(None, found), None)
 
     def _at(self, here: Position, theirs: Windows, delay: Fraction) -> Optional[Choice]:
         # What is new first, and nothing that takes no time and leads nowhere.

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
-from pursue_gen.language.numbers import Number
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.game import JointMove, State
@@ -24,6 +23,7 @@ from pursue_gen.thresholds import from_below
 
 _PARKED, _OVER, _PROLOGUE = "@parked", "@over", "@prologue"
 _HORIZON = "@horizon"
+
 
 @dataclass(frozen=True)
 class Position:
@@ -59,12 +59,11 @@ class PositionSolver:
     ) -> None:
         self.network, self._objective, self._reaction, self._few = network, objective, reaction, few
         self.budget = Budget(NO_LIMITS) if budget is None else budget
-        self._largest = _largest_constants(network)
         self._known: Dict[Tuple[Position, Fraction, Optional[int]], bool] = {}
 
     def same(self, position: Position) -> Position:
         """The position with clocks that no guard can tell from larger ones made equal."""
-        bounds = (self._largest.get(name, 0) for name in self.network.clocks)
+        bounds = self.network.largest.values()
         return replace(position, clocks=tuple(min(v, Fraction(top + 1)) for v, top in zip(position.clocks, bounds)))
 
     def lost(self, position: Position, elapsed: Fraction = Fraction(0), horizon: Optional[int] = None) -> bool:
@@ -116,9 +115,7 @@ def with_horizon(network: Network, horizon: int) -> Network:
     until = Location(_HORIZON, (ClockBound(_HORIZON, "<=", horizon),))
     referee = Automaton(_HORIZON, (until, over), _HORIZON, (end,))
     clocks, channels = (*network.clocks, _HORIZON), (*network.channels, _OVER)
-    return replace(
-        network, clocks=clocks, channels=channels, automata=(*map(ending, network.automata), referee)
-    )
+    return replace(network, clocks=clocks, channels=channels, automata=(*map(ending, network.automata), referee))
 
 
 def beginning_at(network: Network, state: State, clocks: Sequence[int]) -> Network:
@@ -153,13 +150,3 @@ def _prologue(clocks: Mapping[str, int]) -> Automaton:
         edges.append(Edge(here, f"{_PROLOGUE}{k + 1}", then, sync, resets=resets, controllable=False))
     locations.append(Location(f"{_PROLOGUE}{len(moments)}"))
     return Automaton(_PROLOGUE, tuple(locations), locations[0].name, tuple(edges))
-
-
-def _largest_constants(network: Network) -> Dict[str, Number]:
-    largest: Dict[str, Number] = {}
-    for automaton in network.automata:
-        bounds = [bound for place in automaton.locations for bound in place.invariant]
-        bounds += [bound for edge in automaton.edges for bound in edge.guard.clocks]
-        for bound in bounds:
-            largest[bound.clock] = max(largest.get(bound.clock, 0), bound.bound)
-    return largest

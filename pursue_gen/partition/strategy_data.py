@@ -110,12 +110,7 @@ def render(sub: SubStrategy, scenario_name: str, generator: str, reaction: Fract
         "In a state below, the command is due as soon as one of its zones (clocks in time units) holds.",
         *((_WHEREVER,) if sub.in_parts else ()),
     )
-    data = strategy_data(sub, reaction)
-    for name in ("commands_agents", "left_out_clocks"):
-        if name in data:
-            data[name] = inline(data[name])
-    data["strategy"] = [{**entry, "state": inline(entry["state"])} for entry in data["strategy"]]
-    return yaml_text(data, head)
+    return _in_lines(strategy_data(sub, reaction), "strategy", head)
 
 
 def render_cover(strategy: Strategy, scenario_name: str, generator: str) -> str:
@@ -126,12 +121,14 @@ def render_cover(strategy: Strategy, scenario_name: str, generator: str) -> str:
         "In a state below, it waits or commands as long as one of the zones (clocks in time units) holds.",
         *((_WHEREVER, ends) if strategy.in_parts else ()),
     )
-    data = cover_data(strategy)
+    return _in_lines(cover_data(strategy), "cover", head)
+
+
+def _in_lines(data: Dict[str, Any], states: str, head: Sequence[str]) -> str:
+    """The text, with a line for each state, list of agents or clocks, stage and share."""
+    for name in ("commands_agents", "agents", "left_out_clocks"):
+        data.update({name: inline(data[name])} if name in data else {})
     for name in ("stages", "shares"):
-        if name in data:
-            data[name] = [inline(places) for places in data[name]]
-    for name in ("agents", "left_out_clocks"):
-        if name in data:
-            data[name] = inline(data[name])
-    data["cover"] = [{**entry, "state": inline(entry["state"])} for entry in data["cover"]]
+        data.update({name: [inline(places) for places in data[name]]} if name in data else {})
+    data[states] = [{**entry, "state": inline(entry["state"])} for entry in data[states]]
     return yaml_text(data, head)

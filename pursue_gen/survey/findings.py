@@ -58,7 +58,7 @@ def apart(scenario: Scenario, plan: Plan, clearance: Clearance, needed: float) -
 def crossing(scenario: Scenario, plan: Plan) -> Iterator[Diagnostic]:
     """Ways that lead through third places."""
     for way in scenario.connections:
-        places = plan.crossed(way.a, way.b) if way.by is None and {way.a, way.b} <= set(plan.places) else []
+        places = plan.crossed(way.a, way.b) if way.by is None else []
         if places:
             message = f"the way from {way.a} to {way.b} leads through {_listed(places)}, where a robot may stand"
             stops = [way.a, *places, way.b]

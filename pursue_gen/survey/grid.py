@@ -44,18 +44,12 @@ class Grid:
 
     def cell(self, x: float, y: float) -> Point:
         """The point of the grid for a point of the map (metres)."""
-        place = self.settings
-        cos, sin = math.cos(place.yaw), math.sin(place.yaw)
-        across = (cos * (x - place.x) + sin * (y - place.y)) / place.resolution
-        up = (cos * (y - place.y) - sin * (x - place.x)) / place.resolution
+        across, up = self.settings.pixels(x, y)
         return across - self.column, up - self.row
 
     def metres(self, point: Point) -> Point:
         """The point of the map (metres) for a point of the grid; of arrays for arrays."""
-        place = self.settings
-        cos, sin = math.cos(place.yaw), math.sin(place.yaw)
-        across, up = (point[0] + self.column) * place.resolution, (point[1] + self.row) * place.resolution
-        return place.x + cos * across - sin * up, place.y + sin * across + cos * up
+        return self.settings.metres(point[0] + self.column, point[1] + self.row)
 
     def is_free(self, point: Point) -> bool:
         """Return True if the centre of the robot may be at a point of the grid."""

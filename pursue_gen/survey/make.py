@@ -152,8 +152,7 @@ class _Floor:
 
     def with_ways(self, scenario: Scenario) -> _Floor:
         """The same, whose level has the paths of the scenario's ways."""
-        pairs = [(way.a, way.b) for way in scenario.connections if {way.a, way.b} <= set(self.plan.places)]
-        routes = {pair: self.plan.route(*pair) for pair in pairs}
+        routes = {(way.a, way.b): self.plan.route(way.a, way.b) for way in scenario.connections}
         lines = {pair: route.bends for pair, route in routes.items() if route is not None}
         return replace(self, level=replace(self.level, ways=lines))
 
@@ -266,21 +265,13 @@ class _Work:
 
     def way(self, way: Connection, given: bool) -> SurveyedWay:
         """What was found out about a way; `given`: its distance is the author's."""
-        route = self.route(way)
+        route, number = self.plan.route(way.a, way.b), way.distance if given else None
         kept = self._kept(way, route)
-        metres = None if route is None else route.length
-        distance = way.distance
-        if metres is not None and not kept:
-            distance = rounded(metres, self.options.unit, self.scenario)
-        windows = () if route is None or kept else tuple(self._windows(way))
-        crossed = () if route is None else tuple(self.plan.crossed(way.a, way.b))
-        line = () if route is None else route.bends
-        number = way.distance if given else None
-        return SurveyedWay(way.a, way.b, number, metres, distance, kept, crossed, windows, line)
-
-    def route(self, way: Connection) -> Optional[Route]:
-        """The path of a way; None where there is none, or one of its places is not on the map."""
-        return self.plan.route(way.a, way.b) if {way.a, way.b} <= set(self.plan.places) else None
+        if route is None:
+            return SurveyedWay(way.a, way.b, number, None, way.distance, kept, (), (), ())
+        distance = way.distance if kept else rounded(route.length, self.options.unit, self.scenario)
+        crossed, windows = tuple(self.plan.crossed(way.a, way.b)), () if kept else tuple(self._windows(way))
+        return SurveyedWay(way.a, way.b, number, route.length, distance, kept, crossed, windows, route.bends)
 
     def _kept(self, way: Connection, route: Optional[Route]) -> str:
         """Why the distance of a way stays as it is; "": it does not."""
@@ -341,7 +332,7 @@ class _Work:
         """The paths of robots that do not stand at the poses of both places."""
         pairs, longest = [], 0.0
         for way in self.scenario.connections:
-            straight = self.route(way)
+            straight = self.plan.route(way.a, way.b)
             for robot in filter(way.admits, self.options.drive.speeds):
                 poses = [self._standing.get((robot, place)) for place in (way.a, way.b)]
                 points = [(pose.x, pose.y) for pose in poses if pose is not None]

@@ -8,7 +8,7 @@ from typing import Iterator, Mapping, Optional, Tuple
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.drawing.layout import yaw_of
 from pursue_gen.drawing.look import ACCENT, INK, PAPER, QUIET, AgentLook, agent_looks, svg, tag, text
-from pursue_gen.drawing.map_svg import Paper, along
+from pursue_gen.drawing.map_svg import Paper, first_part
 from pursue_gen.language.scenario import Pose, Scenario
 from pursue_gen.survey.make import Survey, SurveyedWay
 
@@ -55,7 +55,7 @@ def _way(way: SurveyedWay, paper: Paper) -> Iterator[str]:
     line = " ".join(f"{x:.2f},{y:.2f}" for x, y in points)
     dash = "7 5" if way.given is None else None
     yield tag("polyline", points=line, fill="none", stroke=QUIET, stroke_width=2.5, stroke_dasharray=dash)
-    x, y = along(points, 0.5)
+    x, y = first_part(points, 0.5)[-1]
     yield text(x, y - 5, f"{way.metres:.1f} m", "pg-small pg-halo")
 
 

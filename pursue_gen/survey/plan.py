@@ -35,8 +35,10 @@ class Plan:
         self._routes = Routes(graph, list(self.places.values()))
 
     def route(self, a: str, b: str) -> Optional[Route]:
-        """The path from one place to another; None if there is none. It is the same line in both directions."""
-        return self._routes.both(self.places[a], self.places[b])
+        """The path from one place to another; None if there is none, or one of them is not among the places. It is the
+        same line in both directions."""
+        known = a in self.places and b in self.places
+        return self._routes.both(self.places[a], self.places[b]) if known else None
 
     def routes(self, pairs: Iterable[Tuple[Point, Point]], most: float) -> Routes:
         """The paths between pairs of other points of the map, those among them that the centre of a robot can be at;
@@ -86,10 +88,9 @@ class Plan:
         """
         ways = _Ways()
         for a, b in known:
-            if a in self.places and b in self.places:
-                route = self.route(a, b)
-                if route is not None:
-                    ways.add(a, b, route.length)
+            route = self.route(a, b)
+            if route is not None:
+                ways.add(a, b, route.length)
         pairs = combinations(self.places, 2)
         estimates = [(self._routes.estimate(self.places[a], self.places[b]), a, b) for a, b in pairs]
         found: List[Pair] = []

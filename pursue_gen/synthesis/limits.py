@@ -110,12 +110,6 @@ class LimitMonitor:
     def __exit__(self, *_: object) -> None:
         look_after(self._outer)
 
-    def admit(self, states: int, waiting: int) -> None:
-        """Raises PursueError (exit status 5) where one more discrete state would be too many."""
-        if 0 < self._limits.states <= states:
-            self._states, self._waiting = states, waiting
-            raise self._stopped_now("states")
-
     def check(self, states: int, waiting: int, work: int = 1) -> None:
         """Raises PursueError (exit status 5) at a limit; `work` is what was done since the last check."""
         self.work += work

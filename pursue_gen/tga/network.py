@@ -208,11 +208,15 @@ class Automaton:
     home: str = ""
 
     @cached_property
+    def bounds(self) -> Tuple[ClockBound, ...]:
+        """What its invariants and its guards compare clocks with."""
+        stays = (bound for location in self.locations for bound in location.invariant)
+        return (*stays, *(bound for edge in self.edges for bound in edge.guard.clocks))
+
+    @cached_property
     def clocks(self) -> FrozenSet[str]:
         """The clocks that it tests or resets."""
-        tested = {bound.clock for location in self.locations for bound in location.invariant}
-        tested.update(bound.clock for edge in self.edges for bound in edge.guard.clocks)
-        return frozenset(tested.union(*(edge.resets for edge in self.edges)))
+        return frozenset({bound.clock for bound in self.bounds}.union(*(edge.resets for edge in self.edges)))
 
     @cached_property
     def stays(self) -> Mapping[str, Tuple[ClockBound, ...]]:
@@ -274,9 +278,16 @@ class Network:
     @cached_property
     def times(self) -> FrozenSet[Number]:
         """All times that clocks are compared with."""
-        bounds = [bound for a in self.automata for place in a.locations for bound in place.invariant]
-        bounds += [bound for a in self.automata for edge in a.edges for bound in edge.guard.clocks]
-        return frozenset((*(bound.bound for bound in bounds), *(constraint.bound for constraint in self.start)))
+        bounds = (bound.bound for automaton in self.automata for bound in automaton.bounds)
+        return frozenset((*bounds, *(constraint.bound for constraint in self.start)))
+
+    @cached_property
+    def largest(self) -> Mapping[str, Number]:
+        """By clock the largest time that automata compare it with; 0 for none."""
+        found: Dict[str, Number] = {clock: 0 for clock in self.clocks}
+        for bound in (bound for automaton in self.automata for bound in automaton.bounds):
+            found[bound.clock] = max(found[bound.clock], bound.bound)
+        return found
 
     @cached_property
     def names(self) -> FrozenSet[str]:

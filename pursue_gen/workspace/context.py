@@ -3,10 +3,9 @@
 A template that uses anything else is an error (jinja2's StrictUndefined). Every template has
 
 - `scenario`, the scenario's name; `generator`, the version of the generator;
-- `package`, the package's name, and `controller`, the same in a controller; `version`, `maintainer`,
-  `maintainer_email`, `license`, `summary` of its manifest;
-- `agents`, a list of {name, kind} in order of declaration, kind `robot`, `human` or `agent` (uncontrollable);
-- `free_agents`, the names of the uncontrollable ones; `robots`, those of the robots;
+- `package`, the package's name, and `controller`, the same in a controller; `summary` of its manifest;
+- `free_agents`, the names of the uncontrollable agents; `robots`, those of the robots; `facts`, the states that are
+  found out on the way;
 - `controllers`, the controllers' names in order: their packages and their nodes have them;
 - `reported`, the agents whose ends come from the world: all of them, but for those whose ends a controller decides;
 - `doors`: there are ways through doors that open by themselves, or by lifts;
@@ -29,7 +28,7 @@ from typing import Any, Dict, Mapping, Optional, Sequence
 from pursue_gen import __version__
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.language.lifts import doors_of, rides_of
-from pursue_gen.language.scenario import Agent, Scenario
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import SubStrategy
 from pursue_gen.tga.network import Objective
 from pursue_gen.workspace.machines import ONE_MACHINE, Machines, nodes_of
@@ -49,11 +48,10 @@ class Options:
     `floor`: a floor plan that lies under the map of the UI's page.
     `guarantee`: in how many time units the strategy comes to the goal at worst; None where that is not known.
     `answers`: by automata, how many time units after they are due promises are kept at worst, as far as it is known.
-    `time_unit`: the default length of a time unit in seconds; None: as the scenario says, 1 where it does not.
     `machines`: which machine runs which node; `docker` and `systemd`: with files for containers, and for services.
     `spot_distance`: metres between the robots at one place where the scenario does not say where they stand; `spare`:
     robot → place → pose that it alone may take if need be; `levels`: those that have maps of their own, with their
-    elevations (metres). The rest goes into the manifests.
+    elevations (metres).
     """
 
     controllers: str = "distributed"
@@ -67,16 +65,12 @@ class Options:
     guarantee: Optional[Fraction] = None
     answers: Mapping[str, Fraction] = field(default_factory=dict)
     floor: Optional[Floor] = None
-    time_unit: Optional[float] = None
     machines: Machines = ONE_MACHINE
     docker: bool = False
     systemd: bool = False
     spot_distance: float = SPOT_DISTANCE
     spare: Mapping[str, Table] = field(default_factory=dict)
     levels: Mapping[str, float] = field(default_factory=dict)
-    maintainer: str = "maintainer"
-    maintainer_email: str = "maintainer@example.org"
-    license: str = "BSD-3-Clause"
 
 
 def bringup_of(scenario: Scenario) -> str:
@@ -84,28 +78,15 @@ def bringup_of(scenario: Scenario) -> str:
     return f"{scenario.name}_bringup"
 
 
-def kind_of(agent: Agent) -> str:
-    """robot, human, or agent for one that is uncontrollable."""
-    if not agent.controllable:
-        return "agent"
-    return "human" if agent.human else "robot"
-
-
 def common(
     scenario: Scenario, objective: Objective, options: Options, controllers: Sequence[SubStrategy]
 ) -> Dict[str, Any]:
     """The values that every template of a workspace has (but for `package` and `summary`)."""
-    agents = [{"name": agent.name, "kind": kind_of(agent)} for agent in scenario.agents]
     first_moves = [command.moves[0] for sub in controllers for _, block in sub.blocks for command in block]
     decided = {move.automaton for move in first_moves if move.edge.is_end}
     return {
         "scenario": scenario.name,
         "generator": __version__,
-        "version": __version__,
-        "maintainer": options.maintainer,
-        "maintainer_email": options.maintainer_email,
-        "license": options.license,
-        "agents": agents,
         "robots": [agent.name for agent in scenario.agents if agent.is_robot],
         "free_agents": [agent.name for agent in scenario.agents if not agent.controllable],
         "facts": list(scenario.facts),
@@ -114,7 +95,7 @@ def common(
         "doors": any(doors_of(scenario, agent) or rides_of(scenario, agent) for agent in scenario.agents),
         "reaches": objective.reaches,
         "bringup": bringup_of(scenario),
-        "time_unit": float(options.time_unit or scenario.unit or 1),
+        "time_unit": float(scenario.unit or 1),
         "machines": [(node, options.machines.of(node)) for node in nodes_of([sub.controller for sub in controllers])],
         "docker": options.docker,
         "systemd": options.systemd,

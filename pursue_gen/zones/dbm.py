@@ -292,14 +292,3 @@ class Dbm:
         for i in range(1, dim):
             m[i] = min(LE_ZERO, self.m[i] + 2 * delay, *(m[j * dim + i] for j in range(1, dim)))
         return Dbm(dim, tuple(m))
-
-    def reset(self, indices: Iterable[int]) -> Dbm:
-        """The zone after these clocks are set to 0."""
-        dim, m = self.dim, list(self.m)
-        for i in indices:
-            assert 0 < i < dim
-            for j in range(dim):
-                m[i * dim + j] = m[j]
-                m[j * dim + i] = m[j * dim]
-            m[i * dim + i] = LE_ZERO
-        return Dbm(dim, tuple(m))

@@ -22,11 +22,6 @@ class Federation:
 
     zones: Tuple[Dbm, ...] = ()
 
-    @staticmethod
-    def of(*zones: Dbm) -> Federation:
-        """The union of these zones."""
-        return Federation(tuple(zones))
-
     def __bool__(self) -> bool:
         """True if there is a point in it."""
         return bool(self.zones)

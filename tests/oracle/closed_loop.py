@@ -16,6 +16,7 @@ from pursue_gen.zones.dbm import Dbm, raw
 from tests.oracle.delays import Act, Advice, Broken, Passage, Rules, pass_time
 from tests.oracle.extrapolation import Described, MaxConstants
 from tests.oracle.unions import without
+from tests.oracle.zones import reset
 
 
 class LoopInPython:
@@ -118,16 +119,14 @@ class LoopInPython:
         return passage
 
     @staticmethod
-    def _entries(
-        situation: Situation, passage: Passage, active: Sequence[Dbm]
-    ) -> List[Tuple[JointMove, Entry]]:
+    def _entries(situation: Situation, passage: Passage, active: Sequence[Dbm]) -> List[Tuple[JointMove, Entry]]:
         """Where commands lead that take effect, and what the environment may do at the active points."""
         steps = list(passage.taken)
         for move in situation.moves:
             if not move.controllable and move.enabled is not None:
                 common = (part.intersect(move.enabled) for part in active)
                 steps += [(move, part) for part in common if part is not None]
-        return [(move, (move.target, part.reset(move.resets))) for move, part in steps]
+        return [(move, (move.target, reset(part, move.resets))) for move, part in steps]
 
     def _advice_in(self, state: State, situation: Situation) -> Advice:
         found = self._advice.get(state)

@@ -23,11 +23,11 @@ from typing import ClassVar, Deque, Dict, Iterable, List, Optional, Sequence, Se
 
 from pursue_gen.synthesis.engine import Engine, Outcome, Stats
 from pursue_gen.synthesis.game import Action, Game, RawBlock, State, initial_state, is_bad, is_goal, joint_moves
-from pursue_gen.synthesis.limits import NO_LIMITS, LimitMonitor, Limits, Listener
+from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.relaxed import RelaxedPlanner
 from pursue_gen.zones.dbm import Dbm
 from pursue_gen.zones.federation import Federation, predt
-from tests.oracle.zone_graph import Node, Transition, ZoneGraph
+from tests.oracle.zone_graph import Monitor, Node, Transition, ZoneGraph
 from tests.oracle.zones import includes_zone, lasting, past
 
 Piece = Tuple[Dbm, Action]
@@ -53,7 +53,7 @@ class ReferenceEngine(Engine):
     ) -> Outcome:
         """Decide the game, see `Engine`. It keeps no ranks."""
         start = limits.now()
-        monitor = LimitMonitor(limits, progress)
+        monitor = Monitor(limits, progress)
         try:
             with monitor:
                 fixpoint: _Fixpoint
@@ -187,7 +187,7 @@ def _tidied(pieces: List[Piece]) -> Tuple[Piece, ...]:
 class _Reach(_Fixpoint):
     """`found` is what is won, `rest` what is reached and not won (yet)."""
 
-    def __init__(self, game: Game, monitor: LimitMonitor, directed: bool) -> None:
+    def __init__(self, game: Game, monitor: Monitor, directed: bool) -> None:
         super().__init__(ZoneGraph(game, monitor, RelaxedPlanner(game).choose if directed else None))
         self._pieces: Dict[int, List[Piece]] = {}
         self._forced: Dict[int, Tuple[Dbm, Federation]] = {}
@@ -222,7 +222,7 @@ class _Reach(_Fixpoint):
             self.found.append(Federation())
             self.rest.append(Federation())
         for number in sorted(changed):
-            reach = Federation.of(nodes[number].reach)
+            reach = Federation((nodes[number].reach,))
             if is_goal(self.graph.game, nodes[number].state):
                 self.found[number] = reach
             else:
@@ -273,7 +273,7 @@ class _Soonest(_Reach):
     move that takes no time counts as one.
     """
 
-    def __init__(self, game: Game, monitor: LimitMonitor) -> None:
+    def __init__(self, game: Game, monitor: Monitor) -> None:
         super().__init__(game, monitor, directed=False)
         self._due: Dict[int, int] = {}
         self._busy: Dict[int, Tuple[int, ...]] = {}
@@ -328,7 +328,7 @@ class _Soonest(_Reach):
 class _Safety(_Fixpoint):
     """`found` is what is lost, `rest` what is reached and not lost (yet)."""
 
-    def __init__(self, game: Game, monitor: LimitMonitor) -> None:
+    def __init__(self, game: Game, monitor: Monitor) -> None:
         super().__init__(ZoneGraph(game, monitor))
         self._unforced: List[Federation] = []
 
@@ -338,7 +338,7 @@ class _Safety(_Fixpoint):
         graph.explore()
         for k, node in enumerate(graph.nodes):
             self.check()
-            reach, bad = Federation.of(node.reach), is_bad(graph.game, node.state)
+            reach, bad = Federation((node.reach,)), is_bad(graph.game, node.state)
             self.found.append(reach if bad else Federation())
             self.rest.append(Federation() if bad else reach)
             unforced = (graph.at_bound(k, owner).minus(graph.own_moves(k, owner)) for owner in graph.limited(k))

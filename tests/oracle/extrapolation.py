@@ -12,7 +12,7 @@ from typing import Callable, Deque, Dict, Iterable, List, Sequence, Set, Tuple
 
 from pursue_gen.proof.moves import Arena, JointMove, State
 from pursue_gen.zones.dbm import Dbm
-from tests.oracle.zones import before_reset, extrapolated
+from tests.oracle.zones import before_reset, extrapolated, reset
 
 NEVER = -1
 """The largest constant of a clock that is not compared before its next reset."""
@@ -40,7 +40,7 @@ class MaxConstants:
         never = [x for x in range(1, zone.dim) if largest[x] == NEVER]
         larger = zone
         if never:
-            freed = before_reset(zone.reset(never), never)
+            freed = before_reset(reset(zone, never), never)
             larger = zone if freed is None else freed
         larger = extrapolated(larger, [0] + [max(0, c) for c in largest[1:]])
         invariant = self._arena.situation(state).invariant

@@ -24,10 +24,20 @@ from pursue_gen.synthesis.game import (
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.zones.dbm import Dbm, complement, constant
 from pursue_gen.zones.federation import Federation
-from tests.oracle.zones import before_reset, extrapolated, hull
+from tests.oracle.zones import before_reset, extrapolated, hull, reset
 
 Chooser = Callable[[State, Sequence[JointMove]], Sequence[JointMove]]
 """Of a state and its moves that the controller can take, those that a search is to follow at first."""
+
+
+class Monitor(LimitMonitor):
+    """A monitor that knows the limit of discrete states, which the engine in C++ keeps itself."""
+
+    def admit(self, states: int, waiting: int) -> None:
+        """Raises PursueError (exit status 5) where one more discrete state would be too many."""
+        if 0 < self._limits.states <= states:
+            self._states, self._waiting = states, waiting
+            raise self._stopped_now("states")
 
 
 @dataclass
@@ -58,7 +68,7 @@ class ZoneGraph:
     There is none where an invariant does not hold at the start.
     """
 
-    def __init__(self, game: Game, monitor: LimitMonitor, choose: Optional[Chooser] = None) -> None:
+    def __init__(self, game: Game, monitor: Monitor, choose: Optional[Chooser] = None) -> None:
         self.game = game
         self.monitor = monitor
         self.nodes: List[Node] = []
@@ -124,7 +134,7 @@ class ZoneGraph:
         moves = [move for move in moves if not (matters and move.joint.is_unseen)]
         enabled = Federation()
         for move in (m for m in moves if m.target >= 0):
-            enabled = enabled.union(self.pre(number, move, Federation.of(self.nodes[move.target].within)))
+            enabled = enabled.union(self.pre(number, move, Federation((self.nodes[move.target].within,))))
         return enabled
 
     def limited(self, number: int) -> Iterable[int]:
@@ -148,7 +158,7 @@ class ZoneGraph:
         for move in moves:
             guard = self.guard(number, move)
             if guard is not None:
-                target = self._enter(move.joint.target, guard.reset(move.joint.resets))
+                target = self._enter(move.joint.target, reset(guard, move.joint.resets))
                 if target is not None:
                     move.target = target
                     self.nodes[target].sources.add(number)

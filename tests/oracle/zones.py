@@ -15,6 +15,18 @@ def hull(one: Dbm, other: Dbm) -> Dbm:
     return Dbm(one.dim, tuple(map(max, one.m, other.m)))
 
 
+def reset(zone: Dbm, indices: Iterable[int]) -> Dbm:
+    """The zone after these clocks are set to 0."""
+    dim, m = zone.dim, list(zone.m)
+    for i in indices:
+        assert 0 < i < dim
+        for j in range(dim):
+            m[i * dim + j] = m[j]
+            m[j * dim + i] = m[j * dim]
+        m[i * dim + i] = LE_ZERO
+    return Dbm(dim, tuple(m))
+
+
 def before_reset(zone: Dbm, indices: Iterable[int]) -> Optional[Dbm]:
     """The valuations that setting these clocks to 0 takes into the zone; None if there are none."""
     dim, clocks = zone.dim, tuple(indices)

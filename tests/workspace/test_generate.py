@@ -468,7 +468,7 @@ def test_writing_puts_the_folder_where_it_was_asked_for(tmp_path: Path, monkeypa
 
 
 def test_templates_are_found() -> None:
-    assert (templates_dir() / "bringup" / "package.xml.j2").is_file()
+    assert (templates_dir() / "common" / "package.xml.j2").is_file()
 
 
 def test_each_command_of_the_strategy_reaches_a_package() -> None:

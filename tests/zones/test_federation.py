@@ -24,7 +24,7 @@ def test_union_intersect_minus(twin: Twin, a: Federation, b: Federation, point: 
 @twins
 @given(a=federations, b=federations, zone=zones)
 def test_includes(twin: Twin, a: Federation, b: Federation, zone: Dbm) -> None:
-    mine, its, alone = twin.federation(a), twin.federation(b), twin.federation(Federation.of(zone))
+    mine, its, alone = twin.federation(a), twin.federation(b), twin.federation(Federation((zone,)))
     assert includes(mine, its) == (not its.minus(mine))
     assert includes_zone(mine, twin.zone(zone)) == (not alone.minus(mine))
     assert includes(mine.union(its), mine)
@@ -82,9 +82,9 @@ def test_touching_zones_merge_and_zones_with_a_gap_do_not(twin: Twin) -> None:
     high = Dbm.of(DIM, [(0, 1, raw(-2, True))])
     open_low = Dbm.of(DIM, [(1, 0, raw(2, True))])
     assert low and high and open_low
-    (whole,) = twin.federation(Federation.of(low, high)).reduced().zones
+    (whole,) = twin.federation(Federation((low, high))).reduced().zones
     assert python(whole) == Dbm.universe(DIM)
-    assert len(twin.federation(Federation.of(open_low, high)).reduced().zones) == 2
+    assert len(twin.federation(Federation((open_low, high))).reduced().zones) == 2
 
 
 @twins
@@ -92,12 +92,12 @@ def test_a_tie_is_lost(twin: Twin) -> None:
     at_two = Dbm.of(2, [(1, 0, raw(2, False)), (0, 1, raw(-2, False))])
     after_two = Dbm.of(2, [(0, 1, raw(-2, True))])
     assert at_two and after_two
-    at, after = twin.federation(Federation.of(at_two)), twin.federation(Federation.of(after_two))
+    at, after = twin.federation(Federation((at_two,))), twin.federation(Federation((after_two,)))
     assert not twin.predt(at, at)
     assert not twin.predt(after, after), "no first instant: the race is lost as well"
     assert includes_zone(twin.predt(at, after), twin.zone(at_two.down()))
 
 
 def test_the_empty_federation() -> None:
-    assert not Federation() and not predt(Federation(), Federation.of(Dbm.universe(2)))
-    assert includes(Federation.of(Dbm.zero(2)), Federation())
+    assert not Federation() and not predt(Federation(), Federation((Dbm.universe(2),)))
+    assert includes(Federation((Dbm.zero(2),)), Federation())

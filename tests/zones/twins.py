@@ -124,6 +124,11 @@ def hull(one: Any, other: Any) -> Any:
     return oracle.hull(one, other) if isinstance(one, Dbm) else one.hull(other)
 
 
+def reset(zone: Any, clocks: Sequence[int]) -> Any:
+    """The zone after these clocks are set to 0, by its implementation or the oracle."""
+    return oracle.reset(zone, clocks) if isinstance(zone, Dbm) else zone.reset(clocks)
+
+
 def before_reset(zone: Any, clocks: Sequence[int]) -> Any:
     """What setting the clocks to 0 takes into the zone, by its implementation or the oracle."""
     return oracle.before_reset(zone, clocks) if isinstance(zone, Dbm) else zone.before_reset(clocks)

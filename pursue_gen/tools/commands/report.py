@@ -138,7 +138,7 @@ def _print_tables(file: Path, reach_obj: Optional[str], request: SolveRequest, a
         games = [api.SolvedGame(won, request) for won in played]
         margins = [solved.margins() for solved in games]
     names = [_NAMES[won.rules.ends] for won in played]
-    game, *ideal = [commands.game_of_solution(won) for won in played]
+    game, *ideal = played
     table = commands.commands_table(scenario.name, scenario.agents, game, ideal[0] if ideal else None, reach_obj)
     if as_json_:
         of_games = {name: margin.as_json() for name, (margin, _) in zip(names, margins)}

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import chain
 from typing import Iterator, List, Optional, Set, Tuple
 
 from pursue_gen.explanation.policy import (
@@ -152,18 +153,10 @@ class CounterPlay:
         """A move of the others within that delay that leaves the game lost."""
         theirs = self._theirs(play)
         likely = {Fraction(0), limit, *moments(theirs, COARSE), *moments(theirs, GRAIN)}
-        for moment in sorted(moment for moment in likely if moment <= limit):
-            found = self._at(play, theirs, moment)
-            if found is not None:
-                return found
         step = max(limit / _SCAN, GRAIN)
-        boundary = self._boundary(play, limit)
         scanned = (min(step * k, limit) for k in range(_SCAN + 1))
-        for moment in [*boundary, *scanned]:
-            found = self._at(play, theirs, moment)
-            if found is not None:
-                return found
-        return None
+        all_ = chain(sorted(moment for moment in likely if moment <= limit), self._boundary(play, limit), scanned)
+        return next(filter(None, (self._at(play, theirs, moment) for moment in all_)), None)
 
     def _boundary(self, play: PlayState, limit: Fraction) -> Iterator[Fraction]:
         """The moments around the first at which it would not be lost any more if no agent did anything."""
@@ -186,8 +179,6 @@ class CounterPlay:
     def _theirs(self, play: PlayState) -> List[Tuple[JointMove, Window]]:
         moves = self.setup.open_moves(play, False)
         return [pair for pair in moves if not pair[0].changes_nothing]
-
-
 
     # What the solver finds --------------------------------------------------------------------------------------------
 

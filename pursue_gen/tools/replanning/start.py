@@ -9,7 +9,6 @@ from math import ceil
 from typing import AbstractSet, Dict, Iterator, List, Mapping, Optional, Tuple, TypeVar
 
 from pursue_gen.language.network_names import agent_clock, agent_position, going
-from pursue_gen.language.numbers import Number
 from pursue_gen.tga.assumptions import without_broken
 from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Edge, Guard, Network, with_controllability
 from pursue_gen.tga.scale import common_denominator, least_common_multiple
@@ -51,7 +50,8 @@ def network_from(network: Network, request: Request, told_apart: bool = False) -
     there = replace(network, automata=serving, variables=tuple(values.items()))
     reaction = request.rules.reaction
     grid = least_common_multiple((_FINEST, common_denominator([reaction, *there.times])))
-    beyond = {name: value + 1 for name, value in clocks.items()} if told_apart else _beyond(there, ceil(reaction))
+    compared = {name: value + ceil(reaction) for name, value in there.largest.items()}  # commands take effect late
+    beyond = {name: Fraction(value + 1) for name, value in (clocks if told_apart else compared).items()}
     start = around(_spread(region(clocks, beyond, grid), request.spread, grid), Fraction(0), request.window)
     return replace(there, start=(*start, *_within_invariants(there, clocks)) if request.window else start)
 
@@ -212,14 +212,3 @@ def _holds(bound: ClockBound, clocks: Mapping[str, Fraction]) -> bool:
         ">=": value >= limit,
         "==": value == limit,
     }[bound.op]
-
-
-def _beyond(network: Network, reaction: int) -> Dict[str, Fraction]:
-    """Per clock a value above all that it is compared with, when commands take effect up to the reaction later."""
-    largest: Dict[str, Number] = {name: 0 for name in network.clocks}
-    for automaton in network.automata:
-        bounds = [bound for location in automaton.locations for bound in location.invariant]
-        bounds += [bound for edge in automaton.edges for bound in edge.guard.clocks]
-        for bound in bounds:
-            largest[bound.clock] = max(largest[bound.clock], bound.bound)
-    return {name: Fraction(value + reaction + 1) for name, value in largest.items()}

@@ -8,10 +8,9 @@ an agent moves at an even speed.
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing import map_svg
@@ -148,32 +147,20 @@ def _step_text(step: Step, words: Words, recording: Recording) -> str:
 def _segments(scenario: Scenario, recording: Recording, floor: Optional[Floor]) -> Dict[str, List[Segment]]:
     """Agent → its movements and stops on the picture, in order of time."""
     words = words_of(scenario, recording.network)
-    where, computed = poses(scenario)
-    places_alone = replace(scenario, agents=())
-    ground = map_svg.draw(places_alone, where, computed, floor)
-    found = re.search(r'viewBox="0 0 ([\d.]+)', ground)
-    assert found is not None, "a map has a size"
-    paper = map_svg.Paper(where, floor, float(found.group(1)), map_svg.margin_of(places_alone))
-
-    def line(a: str, b: str) -> List[Point]:
-        return paper.way(a, b, where, floor)
-
-    return {agent.name: _segments_of(agent, recording, words, line) for agent in scenario.agents}
+    paper = map_svg.paper_of(replace(scenario, agents=()), poses(scenario)[0], floor)
+    return {agent.name: _segments_of(agent, recording, words, paper) for agent in scenario.agents}
 
 
-def _segments_of(
-    agent: Agent, recording: Recording, words: Words, line: Callable[[str, str], List[Point]]
-) -> List[Segment]:
-    """`line`: the way from one place to another on the picture."""
+def _segments_of(agent: Agent, recording: Recording, words: Words, paper: map_svg.Paper) -> List[Segment]:
     segments = []
     for stay in stays(recording, agent.name):
         here = Symbol.of(stay.what)
         is_way = here.role is Role.WAY
         there = here.parts[-1:] or (agent.location.name,)  # nobody has said yet where it starts
-        points = line(*here.parts) if is_way else line(*there * 2)
+        points = paper.way(*here.parts) if is_way else paper.way(*there * 2)
         done = _part_done(recording, stay, agent, here.parts) if is_way else 0.0
         description, is_work = words.place(agent.name, stay.what), here.role is Role.WORK
-        segments.append(Segment(stay.start, stay.end, tuple(_first_part(points, done)), description, is_work))
+        segments.append(Segment(stay.start, stay.end, map_svg.first_part(points, done), description, is_work))
     return segments
 
 
@@ -186,14 +173,3 @@ def _part_done(recording: Recording, stay: Stay, agent: Agent, part: Tuple[str, 
     return float(min(0.95, (stay.end - stay.start) / longest))
 
 
-def _first_part(line: Sequence[Point], part: float) -> List[Point]:
-    """So much of a line with bends, from 0 to 1."""
-    left = part * sum(math.dist(a, b) for a, b in zip(line, line[1:]))
-    found = [line[0]]
-    for a, b in zip(line, line[1:]):
-        if left <= 0:
-            break
-        size = math.dist(a, b)
-        found.append(map_svg.along((a, b), min(1.0, left / size)) if size else b)
-        left -= size
-    return found

@@ -20,8 +20,6 @@ from pursue_gen.partition.split import CONTROLLER, DEDICATED, UI
 from pursue_gen.partition.strategy_data import render
 from pursue_gen.solving.rules import CONTROLLABLE, REPORTED
 from pursue_gen.solving.solution import Solution
-from pursue_gen.synthesis.strategy import Strategy
-from pursue_gen.tga.network import Network
 
 _NOTES: Mapping[Optional[str], Tuple[str, ...]] = {
     None: (
@@ -35,23 +33,6 @@ _NOTES: Mapping[Optional[str], Tuple[str, ...]] = {
     REPORTED: ("One strategy of the default game: robots report the ends, so General has what Centralized has.",),
 }
 """What is said of a table, by its `ends`."""
-
-
-@dataclass(frozen=True)
-class Game:
-    """A strategy with the network that it is for, the reaction delay (time units) that it allows, and who controls the
-    ends (as in `Rules`).
-    """
-
-    network: Network
-    strategy: Strategy
-    reaction: Fraction = Fraction(0)
-    ends: str = REPORTED
-
-
-def game_of_solution(won: Solution) -> Game:
-    """The game that a solution wins."""
-    return Game(won.network, won.strategy, won.reaction, won.rules.ends)
 
 
 @dataclass(frozen=True)
@@ -83,16 +64,15 @@ class CommandsTable:
 def commands_table(
     scenario_name: str,
     agents: Sequence[Agent],
-    game: Game,
-    ideal: Optional[Game] = None,
+    game: Solution,
+    ideal: Optional[Solution] = None,
     reach_obj: Optional[str] = None,
 ) -> CommandsTable:
     """The table of a scenario.
 
     `game` is what the controllers play. `ideal` is the game with controllable ends, if General is to be made of that
     one; without it General is made of `game` too (and has the ends that its strategy commands). `reach_obj` None takes
-    the thesis's policy where the scenario is one of the thesis's, else `dedicated`. Raises what `partition`
-    raises.
+    the thesis's policy where the scenario is one of the thesis's, else `dedicated`. Raises what `partition` raises.
     """
     thesis = thesis_table(scenario_name, tuple(agent.name for agent in agents if agent.is_robot))
     policy = reach_obj or (thesis.reach_obj if thesis else DEDICATED)
@@ -105,7 +85,7 @@ def commands_table(
             name = title if sub.controller == CONTROLLER else sub.controller
             lines = _lines(sub, scenario_name, played.reaction)
             rows.append(Row(name, sub.commands, lines, thesis.figure(name) if thesis else None))
-    ends = None if ideal is not None else game.ends
+    ends = None if ideal is not None else game.rules.ends
     return CommandsTable(scenario_name, policy, tuple(rows), thesis.reach_obj if thesis else None, ends)
 
 

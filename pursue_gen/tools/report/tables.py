@@ -10,7 +10,7 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.times import unit_name
 from pursue_gen.partition.split import ALL, CENTRALIZED, DEDICATED, DISTRIBUTED
 from pursue_gen.solving.solution import Solution
-from pursue_gen.tools.report.commands import CommandsTable, Game, ThesisTable, cells_of, commands_table, thesis_table
+from pursue_gen.tools.report.commands import CommandsTable, ThesisTable, cells_of, commands_table, thesis_table
 from pursue_gen.tools.report.html import Section, rendered, table
 from pursue_gen.tools.simulation.outcome import Settings
 from pursue_gen.tools.simulation.outcome_table import END_TEXTS, driven_words
@@ -30,7 +30,7 @@ class Measured:
 
 
 def command_tables(
-    scenario: Scenario, game: Game, ideal: Game, reach_obj: Optional[str] = None
+    scenario: Scenario, game: Solution, ideal: Solution, reach_obj: Optional[str] = None
 ) -> Tuple[CommandsTable, ...]:
     """A table for each policy for the objective's commands, `reach_obj` first (None: the thesis's or `dedicated`); at
     last one with the first policy and all controllers in the ideal game.

@@ -29,7 +29,7 @@ from pursue_gen.synthesis.limits import Limits, Listener
 from pursue_gen.tga import translate
 from pursue_gen.tga.network import Network
 from pursue_gen.tools.report import animation, automata, graphviz, ros_graph, strategy, tables, timeline, verdict
-from pursue_gen.tools.report.commands import CommandsTable, game_of_solution
+from pursue_gen.tools.report.commands import CommandsTable
 from pursue_gen.tools.report.html import Section, figure, page
 from pursue_gen.tools.report.recording import Recording, simulated
 from pursue_gen.tools.report.strategy_data import StrategyData, strategy_data_of
@@ -164,8 +164,7 @@ def won_report(
     """The report on a scenario that is won; `count` is called with how many missions have been simulated."""
     won = both[0]
     margin = margin_text(won, margins(won, False, limits)[0], unit=scenario.unit)
-    game, ideal = map(game_of_solution, both)
-    policies = tables.command_tables(scenario, game, ideal, options.reach_obj)
+    policies = tables.command_tables(scenario, *both, options.reach_obj)
     policy = policies[0].reach_obj
     missions = tables.measured(scenario, won, policy, options.runs, count) if options.runs else ()
     recording = simulated(tables.case_for(scenario, won, policy), tables.FIRST)
