@@ -92,7 +92,7 @@ class GoalTracker:
             self._ours.append(goal.name)
 
     def send_again(self, now: float, real: float) -> Optional[Goal]:
-        """Note that the present goal is sent once more, and return it."""
+        """Note that the present goal is sent once more, and return it; None where there is none."""
         self._note(now, real)
         self._id = ""
         self._sends, self._repeats = self._sends + 1, self._repeats + 1

@@ -85,7 +85,8 @@ class CommandScheduler:
         return orders
 
     def on_timer(self, now: float, may_begin: Callable[[Command], bool] = lambda command: True) -> Optional[Word]:
-        """Return the word to publish now: a command that is due, or one that got no answer.
+        """Return the word to publish now: a command that is due, or one that got no answer. Ensures that the strategy
+        of the plan in force gives that command in the newest state, now.
 
         A command is not published unless `may_begin` is true of it; one by which the agent leaves where it is not
         before it has acknowledged what it was ordered to do at once.

@@ -69,7 +69,10 @@ class AutomatonMachine:
 
 
 class Automata:
-    """The automata, variables and clocks of a mission; `unit` is the length of a time unit in seconds."""
+    """The automata, variables and clocks of a mission; `unit` is the length of a time unit in seconds.
+
+    Requires times, in seconds, that never go back; ensures that no clock is below 0.
+    """
 
     def __init__(self, model: Model, unit: float) -> None:
         self.model = model
@@ -85,7 +88,10 @@ class Automata:
         self._zeros, self._position = dict.fromkeys(self.model.clocks, now), None
 
     def extend(self, model: Model, now: float) -> None:
-        """Go on with a model that has more: what is new is as at the start, with clocks that begin now."""
+        """Go on with a model that has more: what is new is as at the start, with clocks that begin now.
+
+        Requires all that the present model has; ensures that none of it changes.
+        """
         locations = {name: machine.location for name, machine in self._machines.items()}
         self.model, self._position = model, None
         self._machines = {name: AutomatonMachine(machine) for name, machine in machines_of(model).items()}
@@ -96,7 +102,8 @@ class Automata:
         self._internal = {automaton.name: _Internal(automaton) for automaton in model.of_kind("safety")}
 
     def adopt(self, state: SystemState) -> None:
-        """Set locations, variables and clocks as they are in a state of this model."""
+        """Set locations, variables and clocks as they are in a state. Requires a state of this model; raises ValueError
+        for a location that it does not have."""
         for name, location in state.locations.items():
             self._machines[name].set(location)
         self._values = dict(state.values)
@@ -129,7 +136,8 @@ class Automata:
         return known[1]
 
     def take(self, moves: Iterable[Move], now: float) -> None:
-        """Apply the moves of one event."""
+        """Apply the moves of one event. Requires an edge from its location for each automaton (else AssertionError), at
+        most one; ensures that the clocks that these reset are 0 at `now`."""
         self._position = None
         for name, edge in moves:
             self._machines[name].take(edge)
@@ -143,12 +151,12 @@ class Automata:
         self.take(moves, now)
 
     def set_clocks(self, since: Mapping[str, float]) -> None:
-        """Set clocks, by the times since which they run."""
+        """Set clocks, by the times since which they run. Requires clocks of the model."""
         self._position = None
         self._zeros.update(since)
 
     def set_values(self, values: Mapping[str, int]) -> None:
-        """Set variables."""
+        """Set variables. Requires variables of the model."""
         self._position = None
         self._values.update(values)
 

@@ -64,7 +64,11 @@ class Foresight:
         self._commanded: Dict[Tuple[str, str], Mapping[str, float]] = {}  # what is commanded: that of its moment
 
     def find(self, here: Position, least: float, most: float, quiet: float) -> Optional[Foreseen]:
-        """Return the first position between `least` and `most` in which nothing happens for `quiet`; None: none."""
+        """Return the first position between `least` and `most` in which nothing happens for `quiet`; None: none.
+
+        Requires time units, 0 <= `least`, and to be asked once; ensures a position that the mission comes to if nothing
+        happens that is not expected.
+        """
         passed = settled = 0.0
         position = here
         for number in range(MOST_EVENTS):

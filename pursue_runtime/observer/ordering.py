@@ -337,7 +337,7 @@ class Ordering:
         return None
 
     def answer(self, answer: OrderAnswer) -> None:
-        """Answer the first order."""
+        """Answer the first order. Requires that there is one."""
         self.waiting.pop(0)
         self.attempts, self.lead_time = 0, 0.0
         self.say(answer)

@@ -35,7 +35,8 @@ class Orders:
         self, moves: Tuple[Move, ...], seq: int, is_commanded: bool, lost: Collection[str],
         locations: Mapping[str, str], now: float,
     ) -> None:
-        """Take the moves that led to the state of this number, in which automata are at these locations."""
+        """Take the moves that led to the state of this number, in which automata are at these locations. Requires one
+        move at least, that of who acts first."""
         gone = {name for name, edge in moves if edge.source != edge.target}
         for key, order in list(self._standing.items()):
             if order.agent in gone and not order.at_once:
