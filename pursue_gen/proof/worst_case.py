@@ -112,8 +112,8 @@ def worst_case(
         return _of_stages(network, objective, strategy, reaction, limit, limits)
     if strategy.shares:
         games = shares_of(with_automata_of(network, strategy), objective, strategy)
-        own = next(part for part in games if part.objective.reaches)
-        return worst_case(own.game, own.objective, own.strategy, reaction, limit, limits)
+        own = next((part for part in games if part.objective.reaches and not part.fault), None)
+        return None if own is None else worst_case(own.game, own.objective, own.strategy, reaction, limit, limits)
     if len(strategy.blocks) > _BLOCKS * max(limit, LIMIT):
         return None
     counted, monitor = with_counter(named_part(network, strategy)), LimitMonitor(limits)

@@ -138,8 +138,11 @@ def _answer(request: Request, limits: Limits, states: int) -> Dict[str, Any]:
         else:
             shared = _won_in_shares(network, objective, request, options, little)
             if shared is not None:
-                return _won(shared, network, request, None if states else objective)
+                return _won(shared, network, request, None)
             free = won_without_pauses(network, objective, request.rules.reaction, little, options, states or LIMIT)
+            if free is None and has_promises(objective):
+                limited = replace(options, limits=replace(options.limits, work=little))
+                free = won_in_shares(network, objective, request.rules.reaction, limited)
             if free is not None:
                 return _won(free.strategy, network, request, None if states else objective)
             verdict = _verdict(network, objective, request.rules.reaction, limits.since(start))
@@ -167,7 +170,7 @@ def _won_in_shares(
     """A proven strategy in shares that so much work finds; None where it finds none. For an order they are shared out
     as before if that wins, and little effort finds nothing else; as before at first where nothing is to be sooner: who
     leaves or joins moves but the promises of one robot."""
-    if not can_be_shared(network, objective) and not has_promises(objective):
+    if not can_be_shared(network, objective):
         return None
     limited, known = replace(options, limits=replace(options.limits, work=work)), Known()
     search = partial(won_in_shares, network, objective, request.rules.reaction, limited, known=known)
