@@ -8,7 +8,6 @@ from pursue_gen.language.conditions import WORDS
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.statements.base import StatementKind
 from pursue_gen.language.statements.connect import Connection
-from pursue_gen.language.statements.dependency import Dependency
 from pursue_gen.language.statements.door import Door
 from pursue_gen.language.statements.event import Event
 from pursue_gen.language.statements.group import ForEach, Group
@@ -18,7 +17,7 @@ from pursue_gen.language.statements.mission import MissionEnd
 from pursue_gen.language.statements.poi import Poi
 from pursue_gen.language.statements.rest import Rest
 from pursue_gen.language.statements.rule import Rule
-from pursue_gen.language.statements.state import State
+from pursue_gen.language.statements.state import Dependency, State
 from pursue_gen.language.statements.thing import Thing
 from pursue_gen.language.statements.travel import Travel
 from pursue_gen.language.statements.unit import Unit

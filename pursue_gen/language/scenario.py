@@ -27,7 +27,6 @@ from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.statements.base import Labelled
 from pursue_gen.language.statements.battery import Battery
 from pursue_gen.language.statements.connect import Connection
-from pursue_gen.language.statements.dependency import Dependency
 from pursue_gen.language.statements.door import Door
 from pursue_gen.language.statements.event import Event
 from pursue_gen.language.statements.lift import Lift
@@ -35,7 +34,7 @@ from pursue_gen.language.statements.mission import MissionEnd
 from pursue_gen.language.statements.poi import Poi
 from pursue_gen.language.statements.rest import Rest
 from pursue_gen.language.statements.rule import Both, Choice, Rule, RuleBody, Sequence
-from pursue_gen.language.statements.state import State
+from pursue_gen.language.statements.state import Dependency, State
 from pursue_gen.language.statements.thing import Thing
 from pursue_gen.language.statements.travel import Travel
 from pursue_gen.language.statements.unit import Unit

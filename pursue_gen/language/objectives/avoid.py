@@ -29,14 +29,12 @@ class Avoid(Safety):
         Form("never", "avoid {event}"),
         Form("never while …", "avoid {agent} at {POI} and {agent} on_way"),
     )
+    wants = "{event} never happens."
 
     @classmethod
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Safety:
         (what,) = cls.template.read(reader, children).values()
         return cls(what, **at) if isinstance(what, Ref) else Always(what, False, **at)
-
-    def sentence(self, shown: Callable[[str], str]) -> str:
-        return f"{self.event.shown} never happens."
 
     def broken(self, beside: Callable[[str], str]) -> str:
         return f"{self.event.shown} has happened, which was to be avoided"

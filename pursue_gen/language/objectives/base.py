@@ -88,6 +88,8 @@ class StatedObjective(Written):
     """It stands behind those that stand in other statements, wherever its own one stands."""
     once: ClassVar[bool] = False
     """It is reached once, and its limit counts from the start; else each time that something becomes due."""
+    wants: ClassVar[str] = ""
+    """What it wants, as `Written.told` has it, where that is one form."""
     is_answered: ClassVar[bool] = False
     """Somebody or something asks for it, and it has to be answered in time."""
 
@@ -99,7 +101,7 @@ class StatedObjective(Written):
 
     def sentence(self, shown: Callable[[str], str]) -> str:
         """What it wants. `shown`: what people read for a name."""
-        raise NotImplementedError
+        return self.told(self.wants)
 
     def broken(self, beside: Callable[[str], str]) -> str:
         """What has happened where it is broken. `beside`: a clause about where an agent is, by its name."""

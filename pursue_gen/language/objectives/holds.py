@@ -20,6 +20,7 @@ class Holds(Safety):
 
     most: int
     who: Tuple[Who, ...]
+    wants = "There is room for {some} {where}."
     in_one: ClassVar[str] = ""
     """In one of several rooms that have no names, in English; "": the room has one."""
 
@@ -54,9 +55,6 @@ class Holds(Safety):
             lambda each, k: replace(each, most=k),
             lambda k: f"room for {replace(cast(Any, self), most=k).some} {self.where} instead of {self.some}",
         )  # fmt: skip
-
-    def sentence(self, shown: Callable[[str], str]) -> str:
-        return f"There is room for {self.some} {self.where}."
 
     def broken(self, beside: Callable[[str], str]) -> str:
         return f"more than {self.some} {'is' if self.most == 1 else 'are'} {self.where}"

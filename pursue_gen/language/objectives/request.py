@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any, Callable, Iterator, Mapping, Sequence, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.objectives.base import Breaks, Counted, Easier, Safety, StatedObjective, Whole, Words
 from pursue_gen.language.refs import Ref
@@ -49,6 +49,10 @@ class Request(Safety):
         ),
     )
     forms = (Form("an answer to each of several at once", "if {event} then {event} within {=120}, at_most {=3} open"),)
+    wants = (
+        "Whenever {trigger} happens, {response} answers it within {deadline}, also where it happens again before that: "
+        "the oldest is answered first."
+    )
 
     @classmethod
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Tuple[Safety, ...]:
@@ -88,13 +92,6 @@ class Request(Safety):
             lambda each, k: replace(each, most=k) if each.number < k else None,
             lambda k: f"at_most {k} of {event} open instead of {most}",
         )  # fmt: skip
-
-    def sentence(self, shown: Callable[[str], str]) -> str:
-        asked, due = self.trigger.shown, self.response.shown
-        return (
-            f"Whenever {asked} happens, {due} answers it within {units(self.deadline)}, also where it happens again "
-            "before that: the oldest is answered first."
-        )
 
     def broken(self, beside: Callable[[str], str]) -> str:
         within = written_time(self.deadline)

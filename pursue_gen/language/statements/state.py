@@ -1,4 +1,5 @@
-"""`state "name": initially false, true_if e`: something that events set and reset; `initially unknown`: found out."""
+"""`state "name": initially false, true_if e`: something that events set and reset; `initially unknown`: found out. And
+`stateDependency: event only_if state is_true`: an event that waits for a state."""
 
 from __future__ import annotations
 
@@ -128,3 +129,28 @@ class State(StatementKind):
             if event.name in sets:
                 message = f"{event.name} sets {self.name}, so it shows nothing"
                 yield error("PML431", message, event.span, "take it out of shown_by, or of true_if and false_if")
+
+
+@dataclass(frozen=True)
+class Dependency(StatementKind):
+    """`event` may happen only while `state` has `value`."""
+
+    event: Ref
+    state: Ref
+    value: bool
+    span: Span = NOWHERE
+
+    listed_in = "dependencies"
+    symbol = "Operator"
+    own_words = (Word("stateDependency", "An event that is allowed only while a state has a value."),)
+    template = Template("stateDependency: {event=work} only_if {state=open} {value:is=is_true}")
+    note = "or is_false"
+    forms = (Form("an event that waits for a state", template.to_fill_in),)
+    among = "STATE"
+
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        value = str(self.value).lower()
+        if (kind, name) == ("event", self.event.name):
+            yield f"only while {self.state.name} is {value}"
+        if (kind, name) == ("state", self.state.name):
+            yield f"{self.event.name} can happen only while it is {value}"
