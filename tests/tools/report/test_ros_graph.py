@@ -23,7 +23,9 @@ NAMES = {
 }  # fmt: skip
 SHARED = {
     "subscribe_states(": "Subscriber(STATE, ", "subscribe(": "Subscriber(", "Witnesses(": "Subscriber(SEEN, ",
-    "Witness(": "Publisher(SEEN, ", "Membership(": "Publisher(SEEN, Subscriber(PLAN, ",
+    "Witness(": "Publisher(SEEN, ",
+    "Membership(": 'Publisher(SEEN, Subscriber(PLAN, Subscriber(STATE, Subscriber("/diagnostics", Diagnostics(',
+    "Diagnostics(": 'Publisher("/diagnostics", ',
 }  # fmt: skip
 """What nodes call in other modules, and what that does there."""
 
