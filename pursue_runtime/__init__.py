@@ -3,4 +3,4 @@
 Plain Python; nothing but `nodes` needs ROS.
 """
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"

@@ -1,13 +1,16 @@
-"""README.md, CONTRIBUTING.md and docs/: links lead somewhere, and paths of the source that pages name exist."""
+"""README.md, CONTRIBUTING.md and docs/: links lead somewhere, paths of the source that pages name exist, there is one
+version."""
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 from typing import Set
 
 import pytest
 
+from pursue_runtime import __version__
 from tests.conftest import ROOT
 
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -48,3 +51,11 @@ def test_paths_of_the_source_exist(page: str) -> None:
     assert len(named) > 5
     for path in named:
         assert any((ROOT / package / path).exists() for package in PACKAGES), path
+
+
+def test_every_place_has_the_same_version_and_the_changes_of_it_are_told() -> None:
+    read = {name: (ROOT / name).read_text(encoding="utf-8") for name in ("CHANGELOG.md", "package.xml")}
+    assert re.findall(r"^## (\S+) \(\d{4}-\d\d-\d\d\)$", read["CHANGELOG.md"], re.MULTILINE)[0] == __version__
+    assert f"<version>{__version__}</version>" in read["package.xml"]
+    for name in ("package.json", "package-lock.json"):
+        assert json.loads((ROOT / "editors" / "vscode" / name).read_text(encoding="utf-8"))["version"] == __version__
