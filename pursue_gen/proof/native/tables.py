@@ -93,11 +93,39 @@ class Tables:
         return found
 
 
-_latest: List[Tables] = []
-"""The tables that were made last: one strategy is checked several times in a row, or each part of it."""
-
 _KEPT = 50_000
-"""So many blocks they have, but for the last ones. Measured on a patrol of 140 places."""
+"""So many blocks the tables that were made last have, but for the last ones. Measured on a patrol of 140 places."""
+
+_LEAST = 50
+"""So many blocks any tables count as at least. Not measured."""
+
+
+class _Latest:
+    """The tables that were made last: one strategy is checked several times in a row, or each part of it."""
+
+    def __init__(self) -> None:
+        self._tables: Dict[int, List[Tables]] = {}  # by the identity of their strategies, which they hold
+        self._blocks = 0
+
+    def known(self, network: Network, strategy: Strategy) -> Optional[Tables]:
+        """Those of this strategy in this network, where they are kept."""
+        return next((tables for tables in self._tables.get(id(strategy), ()) if tables.network == network), None)
+
+    def keep(self, made: Tables) -> Tables:
+        """Keeps them, in place of the oldest ones; returns them."""
+        same = self._tables.pop(id(made.strategy), [])
+        self._tables[id(made.strategy)] = [*same, made]
+        self._blocks += _counted(made)
+        while len(self._tables) > 1 and self._blocks > _KEPT:
+            self._blocks -= sum(map(_counted, self._tables.pop(next(iter(self._tables)))))
+        return made
+
+
+_latest = _Latest()
+
+
+def _counted(tables: Tables) -> int:
+    return max(_LEAST, len(tables.strategy.blocks))
 
 
 def tables_of(network: Network, strategy: Strategy) -> Tables:
@@ -105,14 +133,7 @@ def tables_of(network: Network, strategy: Strategy) -> Tables:
     Invalid for a strategy with clocks that the network does not have."""
     if _proof is None:
         raise not_built("checker")
-    for tables in _latest:
-        if tables.strategy is strategy and tables.network == network:
-            return tables
-    made = _Maker(network).tables(strategy)
-    _latest.append(made)
-    while len(_latest) > 1 and sum(len(tables.strategy.blocks) for tables in _latest) > _KEPT:
-        del _latest[0]
-    return made
+    return _latest.known(network, strategy) or _latest.keep(_Maker(network).tables(strategy))
 
 
 class _Maker:
