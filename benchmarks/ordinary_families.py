@@ -279,6 +279,32 @@ def errands_beside_a_visitor(places: int) -> str:
     )
 
 
+def mop_beside_calls(rooms: int) -> str:
+    """One robot mops rooms around a hall, one after the other; two others answer who rings at the gate and who calls
+    from the first room, and one of all sees to the store."""
+    numbers = range(1, rooms + 1)
+    mops = [f"mop{n}" for n in numbers]
+    return statements(
+        ("gate", "hall", "store", *(f"room{n}" for n in numbers)),
+        [("gate", "hall", 6), ("hall", "store", 4), *(("hall", f"room{n}", 4 + n) for n in numbers)],
+        {
+            **{"ring": "location gate", "open": "location gate duration 5"},
+            **{"call": "location room1", "help": "location room1 duration 10"},
+            **{mop: f"location room{n} duration 150" for n, mop in zip(numbers, mops)},
+        },
+        [],
+        [
+            robot("mopper", "store", mops),
+            *(robot(name, "hall", ["open", "help"]) for name in ("porter", "nurse")),
+            'agent "visitor" location gate can_do ring',
+            'agent "patient" location room1 can_do call',
+        ],
+        "assume: visitor waits 60 between ring\nassume: patient waits 90 between call\n"
+        + _promises(["if ring then open within 30", "if call then help within 40", "patrol store every 600 by any robot"])
+        + "".join(f"\nreach_objective: do {mop}" for mop in mops),
+    )
+
+
 ORDINARY: Tuple[Family, ...] = tuple(
     Family(name, grows, " ".join((text.__doc__ or "").split()), text, sizes, sizes[:1])
     for name, grows, text, sizes in (
@@ -294,6 +320,7 @@ ORDINARY: Tuple[Family, ...] = tuple(
         ("factory", "machines", factory, (3,)),
         ("escort", "labs", escort, (3,)),
         ("buildings apart", "buildings", buildings_apart, (1, 2, 4)),
+        ("rooms to mop beside calls", "rooms", mop_beside_calls, (2, 4, 6)),
     )
 )
 

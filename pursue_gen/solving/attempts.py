@@ -54,8 +54,8 @@ units of work at most, and policies of all robots together win none."""
 _ONE = (Attempt(alone=True), Attempt(policy=5_000_000, lost=True))
 """For those of one robot."""
 
-BESIDE_A_GOAL = (Attempt(EFFORTS[1:2], lost=True), Attempt(EFFORTS[2:3]))
-"""For those that are to be kept until a goal is reached."""
+BESIDE_A_GOAL = (Attempt(lost=True), Attempt(EFFORTS[2:3]))
+"""For those that are to be kept until a goal is reached, where shares with less work do not win."""
 
 _CLOCKS = 11
 """With more clocks a policy gets less work, as a zone costs more then, by the square. Measured on the ninth large lab,

@@ -14,6 +14,7 @@ from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.solving.attempts import BESIDE_A_GOAL, decided_by_attempts
 from pursue_gen.solving.cut_off import lost_to_a_stay
 from pursue_gen.solving.decomposition import has_parts, little_work, won_by_some, works_in_parallel
+from pursue_gen.solving.efforts import EFFORTS
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.least_time import Guarantee, bounds
 from pursue_gen.solving.lost_promises import (
@@ -30,7 +31,7 @@ from pursue_gen.solving.passages import crowd_of, without_bad, won_by_passages
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
 from pursue_gen.solving.rules import IDEAL, Rules, played
-from pursue_gen.solving.shares import can_be_shared
+from pursue_gen.solving.shares import can_be_shared, won_in_shares
 from pursue_gen.solving.stays import LostToAStay
 from pursue_gen.solving.tours import PATROL, won_by_tours
 from pursue_gen.solving.tours_beside import won_beside_tours
@@ -207,6 +208,10 @@ def _with_little_work(
         passed = won_by_passages(game, objective, crowd, reaction, options.since(start))
         if passed is not None:
             return passed
+    if verdict is None and has_promises(objective):
+        beside = won_in_shares(game, objective, reaction, options.since(start), EFFORTS[1:2])
+        if beside is not None:
+            return beside
     if verdict is None and (several or shared):
         known = decided_by_attempts(game, objective, reaction, options.since(start))
         if known:
