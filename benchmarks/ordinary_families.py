@@ -300,7 +300,8 @@ def mop_beside_calls(rooms: int) -> str:
             'agent "patient" location room1 can_do call',
         ],
         "assume: visitor waits 60 between ring\nassume: patient waits 90 between call\n"
-        + _promises(["if ring then open within 30", "if call then help within 40", "patrol store every 600 by any robot"])
+        + _promises(("if ring then open within 30", "if call then help within 40"))
+        + "\nobjective: patrol store every 600 by any robot"
         + "".join(f"\nreach_objective: do {mop}" for mop in mops),
     )
 
