@@ -208,6 +208,10 @@ def _with_little_work(
         passed = won_by_passages(game, objective, crowd, reaction, options.since(start))
         if passed is not None:
             return passed
+    if verdict is None and rests and objective.reaches:
+        found = won_without_pauses(game, objective, reaction, work, options.since(start))
+        if found is not None:
+            return found
     if verdict is None and has_promises(objective):
         beside = won_in_shares(game, objective, reaction, options.since(start), EFFORTS[1:2])
         if beside is not None:
@@ -219,7 +223,7 @@ def _with_little_work(
     walking = reaction, options.since(start).limits, options.progress
     if verdict is None and objective.goal and lost_to_one_walk(game, objective, *walking) is not None:
         return ()
-    if verdict is None and rests:
+    if verdict is None and rests and not objective.reaches:
         found = won_without_pauses(game, objective, reaction, work, options.since(start))
         if found is not None:
             return found
