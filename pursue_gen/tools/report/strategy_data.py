@@ -123,8 +123,9 @@ def _objectives(won: Solution) -> Iterator[Tuple[int, Place, Objective, bool]]:
     watched = {watcher.objective for watcher in won.strategy.watchers}
     named = {name for block in won.strategy.blocks for name, _ in block.state.locations}
     for avoided in won.strategy.shares:
-        own = tuple(place for place in avoided if place[0] not in watched and place[0] in named)
-        yield 0, avoided[0], replace(won.objective, bad=own), True
+        own = [place for place in avoided if place[0] not in watched and place[0] in named]
+        goal = [place for place in own if place in won.objective.goal]
+        yield 0, avoided[0], Objective.of(goal, [place for place in own if place not in goal]), True
     for stage, milestones in enumerate(won.strategy.stages):
         for place in milestones:
             yield stage, place, replace(won.objective, goal=(place,)), stage == len(won.strategy.stages) - 1

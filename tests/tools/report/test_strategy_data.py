@@ -21,6 +21,7 @@ from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.watchers import Watcher
 from pursue_gen.tools.report.strategy_data import UNKNOWN, StrategyData, as_json, shown_name, size, strategy_data_of
 from tests.patrols import corridor
+from tests.proof.test_shares import WARD, in_shares
 
 SCENARIOS = Path(__file__).resolve().parents[3] / "scenarios"
 CATCH = load(SCENARIOS / "thesis" / "catch_the_thief.pur")
@@ -142,6 +143,14 @@ def test_of_tours_each_robot_has_a_part_and_what_is_kept_apart_is_not_left_out()
     places = {name: [words for words, *_ in shown] for name, _, shown in data.automata}
     assert "stop 2 of 11" in places["bot1_tour"]
     assert data.left_out == ()
+
+
+def test_who_comes_to_the_goal_and_who_keeps_promises_until_then_have_a_part_each() -> None:
+    network, objective, strategy = in_shares(WARD)
+    won = Solution(network, objective, strategy, Rules().reaction)
+    data = strategy_data_of(parse(WARD, "ward.pur", "ward"), won, "dedicated")
+    assert [(part.stage, part.who, part.until) for part in data.parts] == [(0, ("bot2",), ""), (0, ("bot1",), "")]
+    assert [k < data.parts[1].first for k, situation in enumerate(data.situations) if situation.goal] == [True]
 
 
 def test_an_objective_is_called_by_its_number_and_by_the_robots_for_which_it_is_watched() -> None:
