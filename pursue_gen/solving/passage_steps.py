@@ -14,7 +14,7 @@ from typing import AbstractSet, Dict, Iterable, Iterator, List, Mapping, Optiona
 from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy
 from pursue_gen.tga.network import Edge, Network
-from pursue_gen.tga.tours import Passage, with_passages
+from pursue_gen.tga.passages import Passage, with_passages
 
 Value = Union[str, int]
 

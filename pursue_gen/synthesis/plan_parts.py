@@ -30,7 +30,8 @@ from pursue_gen.synthesis.strategy import Place, Strategy
 from pursue_gen.tga.ending import is_value
 from pursue_gen.tga.network import Automaton, Network
 from pursue_gen.tga.part import part_of
-from pursue_gen.tga.tours import Passage, Tour, passage_automaton, tour_automaton
+from pursue_gen.tga.passages import Passage, passage_automaton
+from pursue_gen.tga.tours import Tour, tour_automaton
 from pursue_gen.tga.watchers import Watcher, watched_by
 
 _LEFT_OUT_CLOCKS = re.compile(r"^ -- Left out clocks:(.*)$", re.MULTILINE)

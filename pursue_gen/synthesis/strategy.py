@@ -11,8 +11,9 @@ from typing import Callable, FrozenSet, Iterable, Iterator, List, Mapping, Optio
 
 from pursue_gen.tga.network import Constraint as Constraint
 from pursue_gen.tga.network import Edge, Network
+from pursue_gen.tga.passages import Passage, with_passages
 from pursue_gen.tga.scale import common_denominator
-from pursue_gen.tga.tours import Passage, Tour, with_passages, with_tours
+from pursue_gen.tga.tours import Tour, with_tours
 from pursue_gen.tga.watchers import Watcher, with_watchers
 
 Place = Tuple[str, str]

@@ -12,9 +12,10 @@ from pursue_gen.outcomes import Invalid
 from pursue_gen.tga.agents import Surroundings, agent_automaton
 from pursue_gen.tga.apart import apart, pause_variables
 from pursue_gen.tga.assumptions import assumed, assumption_clocks, assumption_variables, ways_awaited
+from pursue_gen.tga.batteries import battery_variables, powered
 from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.endurance import charge_clocks
-from pursue_gen.tga.loads import battery_variables, laden, load_variables, powered
+from pursue_gen.tga.loads import laden, load_variables
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import reach_automaton, safety_automaton, unlocking
 from pursue_gen.tga.patrols import arrivals, awaited, turns

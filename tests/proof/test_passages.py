@@ -34,7 +34,7 @@ from pursue_gen.tga.network import (
     Sync,
     Test,
 )
-from pursue_gen.tga.tours import Passage
+from pursue_gen.tga.passages import Passage
 from tests.proof.passing_games import Game, damaged, game_of, of_the_whole, passing_texts
 
 DELAY = Fraction(1, 10)

@@ -9,7 +9,7 @@ import pytest
 from pursue_gen.language import parse
 from pursue_gen.tga import translate
 from pursue_gen.tga.network import Network
-from pursue_gen.tga.tours import Passage, passage_automaton, with_passages
+from pursue_gen.tga.passages import Passage, passage_automaton, with_passages
 from pursue_gen.vocabulary.statuses import statuses
 from pursue_runtime.locations import Visit, place_passed, visit_at
 
